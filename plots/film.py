@@ -3,8 +3,8 @@
 
     plots/film.py FOLDER OUT.webp|.mp4|.png
 
-FOLDER holds film.json (harness/film/recording.h), and pictures.json with the pictures of each take (harness/film/pictures.h). Pillow
-draws captions and writes .webp and .png; ffmpeg writes .mp4.
+FOLDER holds film.json and the pictures of each take (harness/film/film.h). Pillow draws captions and writes .webp and .png;
+ffmpeg writes .mp4.
 """
 
 import argparse
@@ -36,8 +36,8 @@ class Film:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self.header, self.pictures = (json.loads((folder / name).read_text(encoding="utf-8")) for name in ("film.json", "pictures.json"))
-        self.width, self.height, self.frames = (self.pictures[key] for key in ("width", "height", "frames"))
+        self.header = json.loads((folder / "film.json").read_text(encoding="utf-8"))
+        self.width, self.height, self.frames = (self.header[key] for key in ("width", "height", "frames"))
         self.takes, self.rate = self.header["takes"], self.header["frames_per_second"]
         size = max(9, min(15, self.width // 26))
         self.font = ImageFont.truetype(FONT, size) if Path(FONT).exists() else ImageFont.load_default()
@@ -105,7 +105,7 @@ def panel(film: Film, take: int, frame: int) -> Image.Image:
 
 def legend(film: Film, width: int) -> Image.Image:
     """What the colours mean: strain over the permitted one."""
-    shades, end = film.pictures["legend"], film.pictures["legend_end"]
+    shades, end = film.header["legend"], film.header["legend_end"]
     strip = Image.new("RGB", (width, 2 * film.line + MARGIN), BACKGROUND)
     bar = min(width - 2 * MARGIN, 360)
     row = Image.new("RGB", (len(shades), 1))

@@ -29,7 +29,7 @@
 #include "solvers/systems/constraint_system.h"
 
 // Counts up whenever these headers change what a plug-in relies on.
-#define INEXTENSIBLE_PLUGIN_ABI 11
+#define INEXTENSIBLE_PLUGIN_ABI 12
 
 struct InextensibleStampItem {
   const char* what;

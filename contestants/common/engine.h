@@ -111,8 +111,8 @@ class EngineStepper : public inextensible::Stepper {
     }
   }
 
-  StepResult end_velocities(const State& /*start*/, double /*h*/, const Positions& /*filtered*/,
-                            const Positions& x, Positions& v) final {
+  StepResult end_velocities(const State& /*start*/, double /*h*/, const Positions& x,
+                            Positions& v) final {
     v = v_;
     accept(x, v);
     return {};

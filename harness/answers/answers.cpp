@@ -16,7 +16,6 @@
 #include "harness/judge/drive.h"
 #include "harness/judge/mechanics.h"
 #include "harness/run/calibration.h"
-#include "harness/scenes/chain_scenes.h"
 #include "harness/scenes/fabrics.h"
 #include "harness/scenes/meshes.h"
 #include "solvers/problem/edge_constraints.h"

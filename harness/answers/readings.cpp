@@ -1,12 +1,12 @@
 // What known answers read off runs: distances, turns, swings, tensions, falls, angles and shadows.
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
 
 #include "harness/answers/answer.h"
+#include "harness/judge/mechanics.h"
 #include "harness/judge/reference.h"
 #include "harness/scenes/meshes.h"
 
@@ -192,44 +192,15 @@ double net_angle_deviation(const AnswerScene& at, const Motion& motion) {
 
 // ---- The drape coefficient ----
 
-// m^2, of all triangles seen from above, what lies over one another once: counted on a grid of
-// cells of `cell` m.
-double shadow(const Positions& x, const std::vector<std::array<int, 3>>& triangles, double cell) {
-  const double left = x.row(0).minCoeff(), front = x.row(2).minCoeff();
-  const auto columns = static_cast<int>((x.row(0).maxCoeff() - left) / cell) + 2;
-  const auto rows = static_cast<int>((x.row(2).maxCoeff() - front) / cell) + 2;
-  std::vector<char> covered(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), 0);
-  for (const auto& [a, b, c] : triangles) {
-    const Eigen::Vector2d p(x(0, a) - left, x(2, a) - front), q(x(0, b) - left, x(2, b) - front),
-        r(x(0, c) - left, x(2, c) - front);
-    const auto side = [](const Eigen::Vector2d& from, const Eigen::Vector2d& to,
-                         const Eigen::Vector2d& at) {
-      return (to.x() - from.x()) * (at.y() - from.y()) - (to.y() - from.y()) * (at.x() - from.x());
-    };
-    const auto first = [&](double low) { return std::max(0, static_cast<int>(low / cell)); };
-    for (int i = first(std::min({p.y(), q.y(), r.y()}));
-         (i + 0.5) * cell <= std::max({p.y(), q.y(), r.y()}); ++i) {
-      for (int j = first(std::min({p.x(), q.x(), r.x()}));
-           (j + 0.5) * cell <= std::max({p.x(), q.x(), r.x()}); ++j) {
-        const Eigen::Vector2d middle((j + 0.5) * cell, (i + 0.5) * cell);
-        const double u = side(p, q, middle), v = side(q, r, middle), w = side(r, p, middle);
-        if ((u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0))
-          covered[static_cast<std::size_t>(i * columns + j)] = 1;
-      }
-    }
-  }
-  return cell * cell * static_cast<double>(std::count(covered.begin(), covered.end(), 1));
-}
-
 // Cusick's drape coefficient (BS 5058, ISO 9073-9), %: the part of the ring between table and rim
 // that the shadow of the draped disc covers.
 double drape_coefficient(const AnswerScene& at, const Motion& motion) {
-  const double cell = at.parameters.at("radius") / 400,
+  const double reach = 1.1 * at.parameters.at("radius"),
                table = std::numbers::pi * std::pow(at.parameters.at("table"), 2);
+  const auto shadow = [&](const Positions& x) { return shadow_area(at.scene, x, reach, 880); };
   Positions flat = at.scene.start.x;
   flat.row(1).setZero();
-  return 100 * (shadow(motion.state.x, at.scene.triangles, cell) - table) /
-         (shadow(flat, at.scene.triangles, cell) - table);
+  return 100 * (shadow(motion.state.x) - table) / (shadow(flat) - table);
 }
 
 const std::map<std::string, Reading*> readings{{"distance_at_the_end", distance_at_the_end},

@@ -9,7 +9,7 @@
 #include "harness/analysis/measured_point.h"
 #include "harness/base/statistics.h"
 #include "harness/cli/command.h"
-#include "harness/film/pictures.h"
+#include "harness/film/film.h"
 #include "harness/points/suite.h"
 #include "harness/points/tuned.h"
 
@@ -53,7 +53,7 @@ void print_times(const Recording& recording) {
 
 struct Film : SceneOptions {
   std::string solver = "fast_projection", limits = "0.01", out, stills;
-  double step = 0;  // s; 0: not given
+  double step = FilmSpec{}.step;  // s
   double frames_per_second = 30;
   int width = 0;  // pixels; 0: not given
 
@@ -62,10 +62,8 @@ struct Film : SceneOptions {
     SceneOptions::declare(command, scene);
     add_solver(command, solver);
     add_limits(command, limits, limits);
-    command.option("--step", step,
-                   "s; shortened to a whole part of a frame; default: 0.01, or as short as the "
-                   "energy check asks for",
-                   "S", Bounds::positive());
+    command.option("--step", step, "s; shortened to a whole part of a frame; default: 0.01", "S",
+                   Bounds::positive());
     command.option("--fps", frames_per_second, "frames a second", "N", Bounds::positive());
     command.option("--stills", stills,
                    "times of the pictures in a .png, s, between commas; default: four", "TIMES");
@@ -87,7 +85,7 @@ struct Film : SceneOptions {
     }
     tune(film.solvers, read_tuned_up_to_date("tuned.json"), find_scene(film.scene)->kind());
     film.strain_limits = numbers_of("--limit", limits, Bounds::strain());
-    if (step > 0) film.step = step;
+    film.step = step;
     film.frames_per_second = frames_per_second;
     return film;
   }
@@ -125,11 +123,10 @@ struct Film : SceneOptions {
   static Recording recorded(const FilmSpec& film) {
     Progress progress;
     try {
-      return record(film, interrupted,
-                    [&](const FilmRun& run, std::size_t frame, std::size_t frames) {
-                      if (frame <= 1) progress.begin_part();
-                      progress.show(frame, frames, name_of(run, run.label));
-                    });
+      return record(film, interrupted, [&](const FilmRun& run) {
+        if (run.frames.size() == 1) progress.begin_part();
+        progress.show(run.frames.size(), frames_in(film), name_of(run, run.label));
+      });
     } catch (const std::invalid_argument& error) {
       throw UsageError(error.what());
     }
@@ -139,7 +136,6 @@ struct Film : SceneOptions {
   int draw_pictures(const Recording& recording, const std::vector<std::size_t>& frames,
                     bool still) const {
     const TemporaryFolder folder("film");
-    write_film_header(folder.path(), recording);
     Progress progress;
     write_pictures(
         folder.path(), recording,

@@ -51,15 +51,6 @@ void add_places(TunedEntry& entry, const std::vector<TunedPlace>& found) {
   }
 }
 
-json context_of(double timeout) {
-  const json machine = machine_context();
-  return {{"date", machine.at("date")},
-          {"cpu_model", machine.at("cpu_model")},
-          {"commit", machine.at("build").at("git")},
-          {"dirty", machine.at("build").at("dirty")},
-          {"timeout", timeout}};
-}
-
 void print(const TunedEntry& entry) {
   for (const TunedPlace& p : entry.places) {
     std::cout << std::left << std::setw(15) << entry.kind << std::setw(35) << entry.solver
@@ -142,7 +133,13 @@ struct Tune {
     }
     if (there && !again) return false;
     TunedEntry entry = tune_solver(name, on, tuning(), runners);
-    entry.context = context_of(timeout);
+    const json machine = machine_context();
+    const json& build = machine.at("build");
+    entry.context = {{"date", machine.at("date")},
+                     {"cpu_model", machine.at("cpu_model")},
+                     {"commit", build.at("git")},
+                     {"dirty", build.at("dirty")},
+                     {"timeout", timeout}};
     print(entry);
     if (known != entries.end()) entries.erase(known);
     entries.push_back(std::move(entry));

@@ -1,5 +1,3 @@
-#include "harness/cli/options.h"
-
 #include <algorithm>
 #include <limits>
 #include <sstream>
@@ -9,8 +7,9 @@
 #include "harness/base/json.h"
 #include "harness/base/pattern.h"
 #include "harness/base/text.h"
+#include "harness/cli/command.h"
 #include "harness/judge/reference.h"
-#include "harness/scenes/mesh_scenes.h"
+#include "harness/scenes/scene.h"
 #include "solvers/registry.h"
 
 namespace harness {

@@ -1,5 +1,3 @@
-#include "harness/cli/output.h"
-
 #include <unistd.h>
 
 #include <algorithm>
@@ -22,6 +20,7 @@
 #include "harness/base/standard_streams.h"
 #include "harness/base/text.h"
 #include "harness/claims/claims.h"
+#include "harness/cli/command.h"
 #include "harness/points/context.h"
 #include "harness/points/result_file.h"
 #include "harness/tables/tables.h"

@@ -3,7 +3,8 @@
 #include <sstream>
 
 #include "harness/base/files.h"
-#include "harness/film/recording.h"
+#include "harness/film/film.h"
+#include "harness/judge/mechanics.h"
 
 namespace harness {
 namespace {
@@ -14,21 +15,40 @@ std::string written(const std::string& path, const std::string& text) {
   return path;
 }
 
-std::string obj_text(const FilmScene& stage, const inextensible::Positions& x) {
+// A mesh of a film: the cloth of a take, or the body beside it.
+struct Part {
+  std::string name;  // of its files
+  std::vector<std::array<int, 3>> triangles;
+  std::vector<std::array<int, 2>> edges;
+  const inextensible::Problem* problem;  // whose edges they are; null: there are none
+  bool stays;                            // one frame is all
+  std::function<inextensible::Positions(std::size_t frame)> at;
+
+  std::string file(std::size_t frame, const char* extension) const {
+    char number[24] = "";
+    if (!stays) std::snprintf(number, sizeof number, "-%04zu", frame + 1);
+    return name + number + extension;
+  }
+};
+
+std::string obj_text(const Part& part, const inextensible::Positions& x) {
   std::ostringstream out;
   out.precision(9);
   for (Eigen::Index i = 0; i < x.cols(); ++i)
     out << "v " << x(0, i) << ' ' << x(1, i) << ' ' << x(2, i) << '\n';
-  for (const auto& [a, b, c] : stage.triangles)
+  for (const auto& [a, b, c] : part.triangles)
     out << "f " << a + 1 << ' ' << b + 1 << ' ' << c + 1 << '\n';
-  if (stage.triangles.empty()) {
-    for (const auto& [a, b] : stage.edges) out << "l " << a + 1 << ' ' << b + 1 << '\n';
+  if (part.triangles.empty()) {
+    for (const auto& [a, b] : part.edges) out << "l " << a + 1 << ' ' << b + 1 << '\n';
   }
   return out.str();
 }
 
 // Edges first, as lines, then triangles: VTK numbers the cells of a file in this order.
-std::string vtp_text(const FilmScene& stage, const inextensible::Positions& x) {
+std::string vtp_text(const Part& part, const inextensible::Positions& x) {
+  std::vector<double> strains;
+  if (part.problem) append_strains(*part.problem, x, strains);
+  strains.resize(strains.size() + part.triangles.size());
   std::ostringstream out;
   out.precision(9);
   const auto array = [&out](const char* type, const char* name, int components, auto&& values) {
@@ -52,12 +72,10 @@ std::string vtp_text(const FilmScene& stage, const inextensible::Positions& x) {
   };
   out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" "
          "byte_order=\"LittleEndian\">\n<PolyData>\n<Piece NumberOfPoints=\""
-      << x.cols() << "\" NumberOfVerts=\"0\" NumberOfLines=\"" << stage.edges.size()
-      << "\" NumberOfStrips=\"0\" NumberOfPolys=\"" << stage.triangles.size()
-      << "\">\n<CellData>\n";
+      << x.cols() << "\" NumberOfVerts=\"0\" NumberOfLines=\"" << part.edges.size()
+      << "\" NumberOfStrips=\"0\" NumberOfPolys=\"" << part.triangles.size() << "\">\n<CellData>\n";
   array("Float64", "strain", 1, [&] {
-    for (const double strain : strains(stage, x)) out << strain << ' ';
-    for (std::size_t t = 0; t < stage.triangles.size(); ++t) out << "0 ";
+    for (const double strain : strains) out << strain << ' ';
   });
   out << "</CellData>\n<Points>\n";
   array("Float64", "positions", 3, [&] {
@@ -65,8 +83,8 @@ std::string vtp_text(const FilmScene& stage, const inextensible::Positions& x) {
       out << x(0, i) << ' ' << x(1, i) << ' ' << x(2, i) << ' ';
   });
   out << "</Points>\n";
-  cells("Lines", stage.edges);
-  cells("Polys", stage.triangles);
+  cells("Lines", part.edges);
+  cells("Polys", part.triangles);
   out << "</Piece>\n</PolyData>\n</VTKFile>\n";
   return out.str();
 }
@@ -76,31 +94,23 @@ void append(std::string& bytes, Number number) {
   bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
 }
 
-// A mesh of a film: the cloth of a take, or the body beside it.
-struct Part {
-  std::string name;  // of its files
-  FilmScene mesh;
-  bool stays;  // one frame is all
-  std::function<inextensible::Positions(std::size_t frame)> at;
-
-  std::string file(std::size_t frame, const char* extension) const {
-    char number[24] = "";
-    if (!stays) std::snprintf(number, sizeof number, "-%04zu", frame + 1);
-    return name + number + extension;
-  }
-};
-
 // The take must outlive them.
 std::vector<Part> parts_of(const Recording& recording, const FilmRun& take,
                            const std::string& name) {
   const FilmScene& stage = recording.stage;
+  const inextensible::Problem* problem = stage.scene.problem.get();
   std::vector<Part> parts{
-      {name, stage, false, [&take](std::size_t frame) { return take.frames[frame]; }}};
-  if (stage.body.empty()) return parts;
-  FilmScene body;
-  body.triangles = stage.body_triangles;
-  parts.push_back({name + "-body", body, stage.body_poses.empty(),
-                   [&stage](std::size_t frame) { return body_at(stage, frame); }});
+      {name, stage.scene.triangles, {}, problem, false, [&take](std::size_t frame) {
+         return take.frames[frame];
+       }}};
+  for (const auto& [a, b] : problem->edges()) parts[0].edges.push_back({a, b});
+  if (!stage.body.vertices.empty())
+    parts.push_back({name + "-body",
+                     stage.body.triangles,
+                     {},
+                     nullptr,
+                     stage.body_poses.empty(),
+                     [&stage](std::size_t frame) { return body_at(stage, frame); }});
   return parts;
 }
 
@@ -122,12 +132,12 @@ std::string pc2_bytes(const Part& part, std::size_t frames) {
 // One file a frame, or one of a body that stays; their paths.
 std::vector<std::string> write_frames(const std::vector<Part>& parts, const FilmRun& take,
                                       const std::string& folder, const char* extension,
-                                      std::string (*text)(const FilmScene&,
+                                      std::string (*text)(const Part&,
                                                           const inextensible::Positions&)) {
   std::vector<std::string> paths;
   for (const Part& part : parts) {
     for (std::size_t i = 0; i < (part.stays ? 1 : take.frames.size()); ++i)
-      paths.push_back(written(folder + "/" + part.file(i, extension), text(part.mesh, part.at(i))));
+      paths.push_back(written(folder + "/" + part.file(i, extension), text(part, part.at(i))));
   }
   return paths;
 }
@@ -160,7 +170,7 @@ std::vector<std::string> write_pc2(const Recording& recording, const FilmRun& ta
   std::vector<std::string> paths;
   for (const Part& part : parts_of(recording, take, name)) {
     const std::string path = folder + "/" + part.name;
-    paths.push_back(written(path + ".obj", obj_text(part.mesh, part.at(0))));
+    paths.push_back(written(path + ".obj", obj_text(part, part.at(0))));
     if (!part.stays) paths.push_back(written(path + ".pc2", pc2_bytes(part, take.frames.size())));
   }
   return paths;

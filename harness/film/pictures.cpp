@@ -1,10 +1,7 @@
-#include "harness/film/pictures.h"
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <future>
-#include <map>
 #include <mutex>
 #include <numbers>
 #include <numeric>
@@ -15,8 +12,13 @@
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/json.h"
+#include "harness/film/film.h"
+#include "harness/judge/mechanics.h"
 
 namespace harness {
+
+using nlohmann::json;
+
 namespace {
 
 constexpr int legend_end = 4;       // strain over its limit
@@ -43,23 +45,26 @@ Eigen::Vector3d strain_colour(double over_limit) {
   return linear(stops.back().rgb);
 }
 
-// Color of each vertex, by the largest strain of its edges.
-Eigen::Matrix3Xd colours_of(const FilmScene& stage, const inextensible::Positions& x,
+// Colour of each vertex, by the largest strain of its edges.
+Eigen::Matrix3Xd colours_of(const inextensible::Problem& problem, const inextensible::Positions& x,
                             double limit) {
-  const std::vector<double> most = strains_of_vertices(stage, x);
+  std::vector<double> strains, most(static_cast<std::size_t>(x.cols()), 0);
+  append_strains(problem, x, strains);
+  for (std::size_t k = 0; k < strains.size(); ++k) {
+    const auto [a, b] = problem.edges()[k];
+    for (const int end : {a, b}) most[end] = std::max(most[end], strains[k]);
+  }
   Eigen::Matrix3Xd colours(3, x.cols());
   for (Eigen::Index v = 0; v < x.cols(); ++v) colours.col(v) = strain_colour(most[v] / limit);
   return colours;
 }
 
-using Side = std::pair<int, int>;
-
-std::vector<std::uint8_t> yarns_of(const FilmScene& stage) {
-  std::set<Side> edges;
-  for (const auto& [a, b] : stage.edges) edges.insert(std::minmax(a, b));
+std::vector<std::uint8_t> yarns_of(const Scene& scene) {
+  std::set<std::pair<int, int>> edges;
+  for (const auto& [a, b] : scene.problem->edges()) edges.insert(std::minmax(a, b));
   std::vector<std::uint8_t> sides;
-  sides.reserve(stage.triangles.size());
-  for (const auto& t : stage.triangles) {
+  sides.reserve(scene.triangles.size());
+  for (const auto& t : scene.triangles) {
     unsigned yarns = 0;
     for (unsigned k = 0; k < 3; ++k)
       if (edges.contains(std::minmax(t[k], t[(k + 1) % 3]))) yarns |= 1U << k;
@@ -68,26 +73,15 @@ std::vector<std::uint8_t> yarns_of(const FilmScene& stage) {
   return sides;
 }
 
-// Mean length of the cloth's edges, m; 0 without edges.
-double mean_edge(const FilmScene& stage) {
-  if (stage.rest_length.empty()) return 0;
-  return std::accumulate(stage.rest_length.begin(), stage.rest_length.end(), 0.0) /
-         static_cast<double>(stage.rest_length.size());
-}
-
-struct Picture {
-  std::size_t take, frame;
-};
-
-std::vector<Picture> distinct(const Recording& recording, const std::vector<std::size_t>& frames) {
-  std::vector<Picture> pictures;
-  for (std::size_t take = 0; take < recording.takes.size(); ++take) {
-    std::set<std::size_t> shown;
-    for (const std::size_t frame : frames)
-      shown.insert(std::min(frame, recording.takes[take].frames.size() - 1));
-    for (const std::size_t frame : shown) pictures.push_back({take, frame});
+// Sag of each mark at each frame: how far below the height where it would hang if nothing
+// stretched, m.
+json sags(const Scene& scene, const FilmRun& take) {
+  json all = json::object();
+  for (const Scene::Mark& mark : scene.marks) {
+    json& sag = all[mark.name] = json::array();
+    for (const auto& frame : take.frames) sag.push_back(mark.height - frame(1, mark.vertex));
   }
-  return pictures;
+  return all;
 }
 
 std::string ppm(const Pixels& pixels) {
@@ -110,51 +104,24 @@ void on_all_cores(std::size_t count, const std::function<void(std::size_t)>& wor
 
 }  // namespace
 
-std::vector<std::array<int, 3>> oriented(std::vector<std::array<int, 3>> triangles) {
-  std::map<Side, std::vector<std::size_t>> beside;
-  const auto from = [&](std::size_t t, std::size_t k) { return triangles[t][k % 3]; };
-  for (std::size_t i = 0; i < triangles.size(); ++i)
-    for (std::size_t k = 0; k < 3; ++k)
-      beside[std::minmax(from(i, k), from(i, k + 1))].push_back(i);
-  std::vector<char> seen(triangles.size(), 0);
-  for (std::size_t first = 0; first < triangles.size(); ++first) {
-    std::vector<std::size_t> reached;
-    if (!seen[first]) reached.push_back(first);
-    seen[first] = 1;
-    for (std::size_t at = 0; at < reached.size(); ++at) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const int a = from(reached[at], k), b = from(reached[at], k + 1);
-        for (const std::size_t next : beside[std::minmax(a, b)]) {
-          if (seen[next]) continue;
-          seen[next] = 1;
-          reached.push_back(next);
-          for (std::size_t i = 0; i < 3; ++i) {
-            if (from(next, i) != a || from(next, i + 1) != b) continue;
-            std::swap(triangles[next][1], triangles[next][2]);  // it passed in the same direction
-            break;
-          }
-        }
-      }
-    }
-  }
-  return triangles;
-}
-
 Shot shot_of(const Recording& recording, const View& view, std::size_t take, std::size_t frame,
              int width) {
   const FilmScene& stage = recording.stage;
   const FilmRun& shown = recording.takes.at(take);
   Shot shot{.stage = stage, .cloth = shown.frames.at(frame)};
-  shot.colours = colours_of(stage, shot.cloth, shown.strain_limit);
-  if (!stage.body.empty()) shot.body = body_at(stage, frame);
-  const double edge = mean_edge(stage), distance = (view.eye - view.centre).norm();
+  shot.colours = colours_of(*stage.scene.problem, shot.cloth, shown.strain_limit);
+  if (!stage.body.vertices.empty()) shot.body = body_at(stage, frame);
+  const std::vector<double>& lengths = stage.scene.problem->rest_length();
+  const double edge = std::accumulate(lengths.begin(), lengths.end(), 0.0) /
+                      std::max(1.0, static_cast<double>(lengths.size()));  // m, the mean
+  const double distance = (view.eye - view.centre).norm();
   const double pixel = 2 * view.tangent * distance / width;  // m
   shot.thickness = std::clamp(0.25 * edge, 0.004 * view.size, 0.03 * view.size);
-  if (stage.triangles.empty()) {
+  if (stage.scene.triangles.empty()) {
     shot.yarn = std::max(1.2 * pixel, std::min(0.009 * view.size, 0.25 * edge));
     return shot;
   }
-  shot.yarns = yarns_of(stage);
+  shot.yarns = yarns_of(stage.scene);
   shot.yarn = std::clamp(0.05 * edge, 0.4 * pixel, 0.9 * pixel);
   shot.yarn_shade = 0.5 * std::min(1.0, edge / (line_spacing * pixel));
   return shot;
@@ -164,7 +131,11 @@ void write_pictures(const std::string& folder, const Recording& recording, const
                     const std::function<bool()>& interrupted,
                     const std::function<void(std::size_t, std::size_t)>& told) {
   const View view = view_of(recording, spec.frames);
-  const std::vector<Picture> pictures = distinct(recording, spec.frames);
+  std::set<std::pair<std::size_t, std::size_t>> distinct;  // take and frame
+  for (std::size_t take = 0; take < recording.takes.size(); ++take)
+    for (const std::size_t frame : spec.frames)
+      distinct.emplace(take, std::min(frame, recording.takes[take].frames.size() - 1));
+  const std::vector pictures(distinct.begin(), distinct.end());
   std::mutex lock;
   std::size_t done = 0;
   on_all_cores(pictures.size(), [&](std::size_t i) {
@@ -176,14 +147,24 @@ void write_pictures(const std::string& folder, const Recording& recording, const
     const std::lock_guard held(lock);
     told(++done, pictures.size());
   });
-  nlohmann::json legend = nlohmann::json::array();
+  json legend = json::array(), takes = json::array();
   for (int i = 0; i <= 16 * legend_end; ++i) legend.push_back(shade(strain_colour(i / 16.0)));
-  const nlohmann::json header{{"width", spec.width},
-                              {"height", view.height(spec.width)},
-                              {"frames", spec.frames},
-                              {"legend", legend},
-                              {"legend_end", legend_end}};
-  write_atomically(folder + "/pictures.json", compact(header) + "\n");
+  for (const FilmRun& take : recording.takes)
+    takes.push_back({{"label", take.label},
+                     {"strain_limit", take.strain_limit},
+                     {"step", take.step},
+                     {"detail", take.detail},
+                     {"energy_gained", take.energy_gained},
+                     {"frames", take.frames.size()},
+                     {"largest_strain", take.largest_strain},
+                     {"sag", sags(recording.stage.scene, take)},
+                     {"seconds", take.seconds}});
+  const json header{
+      {"width", spec.width},     {"height", view.height(spec.width)},
+      {"frames", spec.frames},   {"frames_per_second", recording.spec.frames_per_second},
+      {"takes", takes},          {"legend", legend},
+      {"legend_end", legend_end}};
+  write_atomically(folder + "/film.json", compact(header) + "\n");
 }
 
 // ---- The camera ----
@@ -205,10 +186,6 @@ void extend(Box& box, const Positions& x) {
     if (point.allFinite()) box.extend(Vector3d(point));
 }
 
-double reach(const Positions& x, const Vector3d& from) {
-  return x.cols() == 0 ? 0 : (x.colwise() - from).colwise().norm().maxCoeff();
-}
-
 // The points that are no farther from `middle` than `followed`.
 Positions near(const Positions& x, const Vector3d& middle, double followed) {
   Positions kept(3, x.cols());
@@ -223,13 +200,15 @@ std::vector<Positions> in_sight(const Recording& recording,
                                 const std::vector<std::size_t>& frames) {
   const FilmScene& stage = recording.stage;
   const Positions& start = recording.takes.at(0).frames.at(0);
-  const bool body = !stage.body.empty();
+  const bool body = !stage.body.vertices.empty();
   const Positions body_start = body ? body_at(stage, 0) : start;
   Box about;
   extend(about, body_start);
   const Vector3d at_first = about.center();
-  const double followed = (body ? near_body : near_start) *
-                          std::max(reach(start, at_first), reach(body_start, at_first));
+  double reach = 0;
+  for (const Positions* x : {&start, &body_start})
+    reach = std::max(reach, (x->colwise() - at_first).colwise().norm().maxCoeff());
+  const double followed = (body ? near_body : near_start) * reach;
   std::vector<Positions> all;
   for (const FilmRun& take : recording.takes) {
     for (const std::size_t shown : frames) {
@@ -258,12 +237,6 @@ int View::height(int width) const {
 
 Vector3d View::ray(double x, double y) const {
   return (tangent * (x * right + y * aspect * up) - towards).normalized();
-}
-
-Eigen::Vector2d View::seen(const Vector3d& point) const {
-  const Vector3d from = point - eye;
-  const double depth = -from.dot(towards) * tangent;
-  return {from.dot(right) / depth, from.dot(up) / (depth * aspect)};
 }
 
 View view_of(const Recording& recording, const std::vector<std::size_t>& frames) {

@@ -1,35 +1,19 @@
-// Runs of a film: how they are recorded, and at which step.
 #include <algorithm>
 #include <cmath>
 
 #include "harness/base/clock.h"
 #include "harness/base/text.h"
-#include "harness/film/pictures.h"
+#include "harness/film/film.h"
 #include "harness/judge/drive.h"
 #include "harness/judge/energy.h"
 #include "harness/judge/mechanics.h"
 #include "harness/run/measure_point.h"
-#include "solvers/problem/triangle_collider.h"
 #include "solvers/registry.h"
 
 namespace harness {
 namespace {
 
 using inextensible::State;
-
-FilmScene stage_of(const Scene& scene) {
-  FilmScene stage;
-  stage.triangles = oriented(scene.triangles);
-  for (const auto [a, b] : scene.problem->edges()) stage.edges.push_back({a, b});
-  stage.rest_length = scene.problem->rest_length();
-  stage.marks = scene.marks;
-  const auto* body = dynamic_cast<const inextensible::TriangleCollider*>(scene.problem->collider());
-  if (body) {
-    stage.body = body->mesh().vertices;
-    stage.body_triangles = body->mesh().triangles;
-  }
-  return stage;
-}
 
 // The settings given, and for springs the stiffness that a sweep would find.
 inextensible::Settings calibrated(const FilmSpec& spec, const Contestant& contestant, double limit,
@@ -73,29 +57,19 @@ std::string gave_up(double time, const std::string& why) {
   return "gave up at t = " + number_text(time, 3) + " s: " + why;
 }
 
-// What the runs of a film have in common.
-struct FilmSetup {
-  const FilmSpec& spec;
-  const Scene& scene;
-  const FilmScene& stage;
-  double energy_bound;
-  const std::function<bool()>& interrupted;
-  const std::function<void(const FilmRun&)>& told;
-};
-
-// Ends early where energy is gained, unless `to_the_end`.
-FilmRun take_of(const FilmSetup& setup, const Contestant& contestant, double limit, double step,
-                bool to_the_end) {
-  const FilmSpec& spec = setup.spec;
-  const Scene& scene = setup.scene;
+FilmRun take_of(const FilmSpec& spec, const Scene& scene, double energy_bound,
+                const Contestant& contestant, double limit,
+                const std::function<bool()>& interrupted,
+                const std::function<void(const FilmRun&)>& told) {
   const double rate = spec.frames_per_second;
   FilmRun take;
   take.solver = contestant.name;
   take.label = label_of(contestant);
   take.strain_limit = limit;
-  take.steps_per_frame = std::max(1, static_cast<int>(std::ceil(1 / (rate * step) - 1e-9)));
-  take.step = take.smallest_step = 1 / (rate * take.steps_per_frame);
-  const auto settings = calibrated(spec, contestant, limit, take.step, setup.interrupted);
+  const int steps_per_frame =
+      std::max(1, static_cast<int>(std::ceil(1 / (rate * spec.step) - 1e-9)));
+  take.step = take.smallest_step = 1 / (rate * steps_per_frame);
+  const auto settings = calibrated(spec, contestant, limit, take.step, interrupted);
   const inextensible::Backend& backend = *inextensible::find_backend(contestant.solver);
   State state = start_of(scene, backend, take.step);
   const auto stepper =
@@ -105,32 +79,31 @@ FilmRun take_of(const FilmSetup& setup, const Contestant& contestant, double lim
   Clock::time_point begin;
   const auto keep = [&](const State& at) {
     take.frames.push_back(at.x);
-    const std::vector<double> all = strains(setup.stage, at.x);
-    take.largest_strain.push_back(all.empty() ? 0 : *std::max_element(all.begin(), all.end()));
-    setup.told(take);
+    take.largest_strain.push_back(strain_range(*scene.problem, at.x).most);
+    told(take);
     begin = Clock::now();
   };
   const auto judge_energy = [&] {
     if (take.energy_gained.empty())
-      take.energy_gained = energy_gained(energy, setup.energy_bound, scene.duration);
+      take.energy_gained = energy_gained(energy, energy_bound, scene.duration);
   };
   const auto go_on = [&](const State& at, const DriveState& driven) {
     const double seconds = since(begin);
     energy.after(at, driven.last);
     judge_energy();
-    if (driven.whole && driven.steps % take.steps_per_frame == 0) {
+    if (driven.whole && driven.steps % steps_per_frame == 0) {
       take.smallest_step = driven.smallest;
       take.seconds.push_back(seconds);
       keep(at);
     }
     const std::string work = too_much_work(stepper->work(), driven.steps);
     if (!work.empty()) take.detail = gave_up(at.time, work);
-    return work.empty() && (to_the_end || take.energy_gained.empty());
+    return work.empty();
   };
   keep(state);
-  const long steps = take.steps_per_frame * (static_cast<long>(frames_in(spec)) - 1);
+  const long steps = steps_per_frame * (static_cast<long>(frames_in(spec)) - 1);
   const DriveState driven = drive(*stepper, state, {take.step, steps, most_halvings}, go_on,
-                                  {.interrupted = setup.interrupted});
+                                  {.interrupted = interrupted});
   if (driven.end == DriveState::End::refused)
     take.detail = gave_up(state.time, driven.result.detail);
   energy.finish();
@@ -138,44 +111,38 @@ FilmRun take_of(const FilmSetup& setup, const Contestant& contestant, double lim
   return take;
 }
 
-// At the first of the default step and its halves at which the run passes; where none does, at the
-// one that goes well for longest.
-FilmRun take_of_default_step(const FilmSetup& setup, const Contestant& contestant, double limit) {
-  double step = default_step, longest_step = step;
-  std::size_t longest = 0;
-  for (int halved = 0; halved <= most_refinements; ++halved) {
-    FilmRun take = take_of(setup, contestant, limit, step, false);
-    if (take.detail.empty() && take.energy_gained.empty()) return take;
-    if (take.frames.size() > longest) longest_step = take.step;
-    longest = std::max(longest, take.frames.size());
-    step = take.step / 2;
-  }
-  return take_of(setup, contestant, limit, longest_step, true);
-}
-
 // A body that moves does work: it can throw cloth at twice its own speed at most, as an elastic
 // impact does, and lift it as far as it rises itself.
-double energy_bound_of(const Scene& scene, const FilmScene& stage, double frames_per_second) {
+double energy_bound_of(const FilmScene& stage, double frames_per_second) {
+  const Scene& scene = stage.scene;
   if (std::isfinite(scene.energy_bound)) return scene.energy_bound;
-  const auto at = [&](std::size_t frame, Eigen::Index i) {
-    const inextensible::Pose& pose = stage.body_poses[frame];
-    return pose(stage.body.empty() ? Eigen::Vector3d(scene.start.x.col(i)) : stage.body[i]);
-  };
-  const auto points = stage.body.empty() ? scene.start.x.cols() : std::ssize(stage.body);
-  double fastest = 0, rise = 0;
+  const inextensible::Positions start = body_at(stage, 0);
+  inextensible::Positions before = start;
+  double longest_way = 0, rise = 0;  // m, of a corner, from frame to frame and in all
   for (std::size_t frame = 1; frame < stage.body_poses.size(); ++frame) {
-    for (Eigen::Index i = 0; i < points; ++i) {
-      fastest = std::max(fastest, (at(frame, i) - at(frame - 1, i)).norm() * frames_per_second);
-      rise = std::max(rise, at(frame, i).y() - at(0, i).y());
-    }
+    const inextensible::Positions now = body_at(stage, frame);
+    longest_way = std::max(longest_way, (now - before).colwise().norm().maxCoeff());
+    rise = std::max(rise, (now - start).row(1).maxCoeff());
+    before = now;
   }
   const inextensible::Problem& problem = *scene.problem;
   const double work =
-      problem.total_mass() * (0.5 * std::pow(2 * fastest, 2) + problem.gravity().norm() * rise);
+      problem.total_mass() *
+      (0.5 * std::pow(2 * longest_way * frames_per_second, 2) + problem.gravity().norm() * rise);
   return Scene{}.energy_bound + work / energy_scale(scene);
 }
 
 }  // namespace
+
+inextensible::Positions body_at(const FilmScene& stage, std::size_t frame) {
+  const inextensible::Pose pose =
+      stage.body_poses.empty() ? inextensible::Pose{} : stage.body_poses.at(frame);
+  const std::vector<Eigen::Vector3d>& corners = stage.body.vertices;
+  inextensible::Positions x(3, corners.size());
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    x.col(static_cast<Eigen::Index>(i)) = pose(corners[i]);
+  return x;
+}
 
 std::size_t frames_in(const FilmSpec& spec) {
   return 1 + static_cast<std::size_t>(
@@ -183,26 +150,21 @@ std::size_t frames_in(const FilmSpec& spec) {
 }
 
 Recording record(const FilmSpec& spec, const std::function<bool()>& interrupted,
-                 const std::function<void(const FilmRun&, std::size_t, std::size_t)>& told) {
-  const Scene scene = find_scene(spec.scene)->build(spec.parameters);
-  Recording recording;
-  recording.spec = spec;
-  recording.stage = stage_of(scene);
-  const std::size_t frames = frames_in(spec);
+                 const std::function<void(const FilmRun&)>& told) {
+  Recording recording{spec, {find_scene(spec.scene)->build(spec.parameters), {}, {}}, {}};
+  const Scene& scene = recording.stage.scene;
+  const auto* body = dynamic_cast<const inextensible::TriangleCollider*>(scene.problem->collider());
+  if (body) recording.stage.body = body->mesh();
   if (const auto& motion = scene.problem->body_motion()) {
-    for (std::size_t i = 0; i < frames; ++i)
+    for (std::size_t i = 0; i < frames_in(spec); ++i)
       recording.stage.body_poses.push_back(
           motion(scene.start.time + static_cast<double>(i) / spec.frames_per_second));
   }
-  const std::function<void(const FilmRun&)> tell = [&](const FilmRun& take) {
-    told(take, take.frames.size(), frames);
-  };
-  const double energy_bound = energy_bound_of(scene, recording.stage, spec.frames_per_second);
-  const FilmSetup setup{spec, scene, recording.stage, energy_bound, interrupted, tell};
+  const double energy_bound = energy_bound_of(recording.stage, spec.frames_per_second);
   for (const double limit : spec.strain_limits) {
     for (const Contestant& contestant : spec.solvers)
-      recording.takes.push_back(spec.step ? take_of(setup, contestant, limit, *spec.step, true)
-                                          : take_of_default_step(setup, contestant, limit));
+      recording.takes.push_back(
+          take_of(spec, scene, energy_bound, contestant, limit, interrupted, told));
   }
   return recording;
 }

@@ -19,9 +19,6 @@ namespace {
 constexpr const char* no_reference = "no reference of this scene, size and parameters";
 constexpr double time_tolerance = 1e-9;  // s; states add up their steps
 
-// To six digits: a series is for pictures and sums, and files shall stay small.
-double six_digits(double value) { return std::isfinite(value) ? rounded_to(value) : value; }
-
 double root_mean_square(const std::vector<double>& numbers) {
   const double squares = std::inner_product(numbers.begin(), numbers.end(), numbers.begin(), 0.0);
   return std::sqrt(squares / static_cast<double>(numbers.size()));
@@ -176,9 +173,10 @@ Measures Judge::finish() {
   measures.reference = options_.reference->name();
   measures.valid_until = options_.reference->valid_until;
   add_errors(measures);
+  // To six digits: a series is for pictures and sums, and files shall stay small.
   for (ErrorSample& at : measures.error_series)
-    at = {six_digits(at.time), six_digits(at.error), six_digits(at.worst), six_digits(at.gap),
-          six_digits(at.worst_gap)};
+    for (double* value : {&at.time, &at.error, &at.worst, &at.gap, &at.worst_gap})
+      *value = rounded_to(*value);
   if (reference_moved_squares_ > 0)
     measures.moved = std::sqrt(moved_squares_ / reference_moved_squares_);
   return measures;
@@ -218,7 +216,7 @@ std::optional<ResidualProbe::Residuals> ResidualProbe::residuals() {
   watching_ = false;
   if (iterations_ == 0) return {};
   const double first = mean_residual(first_);
-  return Residuals{first, iterations_ == 1 ? first : mean_residual(last_), iterations_};
+  return Residuals{first, iterations_ == 1 ? first : mean_residual(last_)};
 }
 
 }  // namespace harness

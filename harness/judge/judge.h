@@ -22,7 +22,6 @@ class ResidualProbe final : public inextensible::IterateObserver {
  public:
   struct Residuals {
     double first = 0, last = 0;  // mean of |F| over vertices after the first, the last iteration, m
-    int iterations = 0;
   };
   // Looks at the next step, until it is asked for its residuals; else iterates pass unseen.
   void watch();

@@ -4,6 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <set>
+#include <utility>
+#include <vector>
 
 #include "solvers/problem/forces.h"
 
@@ -15,6 +19,36 @@ using inextensible::Problem;
 using inextensible::State;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// The vertices along the hem, in order: sides of one triangle only. Empty where there is not one
+// loop.
+std::vector<int> hem_of(const Scene& scene) {
+  std::set<std::pair<int, int>> open;  // sides of one triangle so far
+  for (const auto& corners : scene.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int a = corners[k], b = corners[(k + 1) % 3];
+      const std::pair side{std::min(a, b), std::max(a, b)};
+      if (open.erase(side) == 0) open.insert(side);
+    }
+  }
+  std::map<int, std::vector<int>> beside;
+  for (const auto& [a, b] : open) {
+    beside[a].push_back(b);
+    beside[b].push_back(a);
+  }
+  std::vector<int> hem;
+  if (beside.empty()) return hem;
+  int before = -1, at = beside.begin()->first;
+  do {
+    const std::vector<int>& both = beside[at];
+    if (both.size() != 2) return {};
+    hem.push_back(at);
+    const int after = both[0] == before ? both[1] : both[0];
+    before = at;
+    at = after;
+  } while (at != hem.front() && hem.size() < beside.size());
+  return hem.size() == beside.size() ? hem : std::vector<int>();
+}
 
 }  // namespace
 
@@ -42,7 +76,7 @@ StrainRange strain_range(const Problem& problem, const Positions& x) {
 void append_strains(const Problem& problem, const Positions& x, std::vector<double>& strains) {
   for (std::size_t k = 0; k < problem.edges().size(); ++k) {
     const auto [a, b] = problem.edges()[k];
-    strains.push_back(strain_size(x, a, b, problem.rest_length()[k]));
+    strains.push_back(std::abs((x.col(b) - x.col(a)).norm() / problem.rest_length()[k] - 1));
   }
 }
 
@@ -74,6 +108,77 @@ double energy_scale(const Scene& scene) {
 
 void raise(double& figure, double value) {
   figure = std::isnan(figure) ? value : std::max(figure, value);
+}
+
+double shadow_area(const Scene& scene, const Positions& x, double reach, int pixels) {
+  const double pixel = 2 * reach / pixels;
+  std::vector<char> dark(pixels * pixels, 0);
+  const auto index = [&](double coordinate) {
+    return std::clamp(static_cast<int>((coordinate + reach) / pixel), 0, pixels - 1);
+  };
+  for (const auto& [a, b, c] : scene.triangles) {
+    const Eigen::Vector2d p(x(0, a), x(2, a)), q(x(0, b), x(2, b)), r(x(0, c), x(2, c));
+    const auto cross = [](const Eigen::Vector2d& u, const Eigen::Vector2d& v) {
+      return u.x() * v.y() - u.y() * v.x();
+    };
+    const double area = cross(q - p, r - p);
+    if (area == 0) continue;
+    const Eigen::Vector2d low = p.cwiseMin(q).cwiseMin(r), high = p.cwiseMax(q).cwiseMax(r);
+    for (int j = index(low.y()); j <= index(high.y()); ++j) {
+      for (int i = index(low.x()); i <= index(high.x()); ++i) {
+        const Eigen::Vector2d s((i + 0.5) * pixel - reach, (j + 0.5) * pixel - reach);
+        if (cross(q - p, s - p) / area >= 0 && cross(r - q, s - q) / area >= 0 &&
+            cross(p - r, s - r) / area >= 0)
+          dark[j * pixels + i] = 1;
+      }
+    }
+  }
+  const auto count = std::count(dark.begin(), dark.end(), 1);
+  return static_cast<double>(count) * pixel * pixel;
+}
+
+int count_folds(const Scene& scene, const Positions& x) {
+  constexpr double least = 0.02;
+  std::vector<int> hem = hem_of(scene);
+  if (hem.empty()) return 0;
+  const auto lower = [&](int a, int b) { return x(1, a) < x(1, b); };
+  std::rotate(hem.begin(), std::min_element(hem.begin(), hem.end(), lower), hem.end());
+  hem.push_back(hem.front());
+  // From the lowest vertex, a fold is a rise above the last valley and a fall below the last crest.
+  int folds = 0;
+  bool rising = true;
+  double valley = x(1, hem.front()), crest = valley;
+  for (const int vertex : hem) {
+    const double y = x(1, vertex);
+    crest = std::max(crest, y);
+    valley = std::min(valley, y);
+    if (rising ? crest - y < least * scene.size : y - valley < least * scene.size) continue;
+    folds += rising ? 1 : 0;
+    rising = !rising;
+    (rising ? crest : valley) = y;
+  }
+  return folds;
+}
+
+bool is_cloth(const Scene& scene) { return !scene.triangles.empty(); }
+
+Shape shape_of(const Scene& scene, const Positions& x) {
+  const double size = scene.size;
+  const double reach = 0.75 * size;  // a square cloth of side 1 reaches 0.71 from its middle
+  double corner_height = 0;
+  for (const int corner : scene.corners)
+    corner_height += x(1, corner) / size / static_cast<double>(scene.corners.size());
+  return {
+      {"potential_energy", inextensible::potential_energy(*scene.problem, x) / energy_scale(scene)},
+      {"corner_height", corner_height},
+      {"shadow", shadow_area(scene, x, reach, 512) / (size * size)},
+      {"folds", count_folds(scene, x)}};
+}
+
+Shape rest_difference(const Scene& scene, const Positions& x, const Positions& y) {
+  Shape difference = shape_of(scene, x);
+  for (const auto& [name, value] : shape_of(scene, y)) difference[name] -= value;
+  return difference;
 }
 
 }  // namespace harness

@@ -1,8 +1,9 @@
-// What the harness reads off positions and velocities: the one place where strain, momentum and
-// energy are computed for the judge, the hard cases and `bench check`.
+// What the harness reads off positions and velocities: the one place where strain, momentum,
+// energy and shape are computed for the judge, the hard cases and `bench check`.
 #pragma once
 
-#include <cmath>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "harness/scenes/scene.h"
@@ -21,10 +22,6 @@ struct StrainRange {
 // x: 3 x vertices, m.
 StrainRange strain_range(const inextensible::Problem& problem, const inextensible::Positions& x);
 
-// |strain| of the edge from a to b.
-inline double strain_size(const inextensible::Positions& x, int a, int b, double rest_length) {
-  return std::abs((x.col(b) - x.col(a)).norm() / rest_length - 1);
-}
 // Appends every edge's |strain|.
 void append_strains(const inextensible::Problem& problem, const inextensible::Positions& x,
                     std::vector<double>& strains);
@@ -43,5 +40,26 @@ double energy_scale(const Scene& scene);
 
 // The larger of both; a figure that is not yet known (NaN) becomes the value.
 void raise(double& figure, double value);
+
+// ---- The shape of a cloth at rest ----
+
+bool is_cloth(const Scene& scene);  // it has a shadow and a hem
+
+// m^2, of the cloth's shadow on a horizontal plane as far as `reach` (m) from the y axis along x
+// and z: counted on a raster of pixels x pixels.
+double shadow_area(const Scene& scene, const inextensible::Positions& x, double reach, int pixels);
+
+// How often the hem rises and falls again by 2 % of the size or more on one way around the cloth. 0
+// where its triangles have no single hem.
+int count_folds(const Scene& scene, const inextensible::Positions& x);
+
+// Potential energy over weight times size, mean height of the corners over size, area of the shadow
+// on a horizontal plane over size^2, and folds.
+using Shape = std::map<std::string, double>;
+Shape shape_of(const Scene& scene, const inextensible::Positions& x);
+
+// What a cloth at rest is judged by: x's shape minus y's.
+Shape rest_difference(const Scene& scene, const inextensible::Positions& x,
+                      const inextensible::Positions& y);
 
 }  // namespace harness

@@ -36,12 +36,6 @@ constexpr auto reference_fields = std::tuple{
     field("observed_order", &Reference::observed_order, "", "under step halving", may_be_absent),
     field("expected_order", &Reference::expected_order, "", "by theory")};
 
-// Lists of the file that belong to its times.
-bool lengths_agree(const Reference& r) {
-  const std::size_t times = r.times.size();
-  return r.gap.size() == times && r.gap_max.size() == times && r.positions.size() <= times;
-}
-
 // Why it is of no scene of ours, or not of as many vertices; "": it is.
 std::string mismatch(const Reference& r) {
   const auto type = find_scene(r.scene);
@@ -54,7 +48,10 @@ std::string mismatch(const Reference& r) {
       return "positions of " + std::to_string(x.cols()) + " vertices, the scene has " +
              std::to_string(vertices);
   }
-  return lengths_agree(r) ? "" : "lists of different lengths";
+  const std::size_t times = r.times.size();
+  const bool agree =
+      r.gap.size() == times && r.gap_max.size() == times && r.positions.size() <= times;
+  return agree ? "" : "lists of different lengths";
 }
 
 template <int digits>
@@ -74,6 +71,24 @@ json summary_of(const Reference& r) {
           {"gap", std::sqrt(squares / valid)},
           {"observed_order", number(r.observed_order)},
           {"energy_drift", r.energy_drift}};
+}
+
+// The motion of a scene that is known exactly, at the sample times. Null for other scenes.
+std::shared_ptr<const Reference> exact_reference(const std::string& scene_name,
+                                                 const SceneParameters& complete) {
+  const auto type = find_scene(scene_name);
+  if (!type->exact) return nullptr;
+  const auto r = std::make_shared<Reference>();
+  r->scene = scene_name;
+  r->parameters = complete;
+  r->method = r->second_method = "exact";
+  r->exact = true;
+  r->times = sample_times(complete.at("duration"));
+  for (const double time : r->times) r->positions.push_back(type->exact(complete, time));
+  r->gap.assign(r->times.size(), 0);
+  r->gap_max = r->gap;
+  r->valid_until = r->duration();
+  return r;
 }
 
 // Durations differ where names do not.
@@ -115,23 +130,6 @@ std::vector<double> sample_times(double duration) {
   for (int k = 1; k * sample_interval <= duration * (1 + 1e-9); ++k)
     times.push_back(k * sample_interval);
   return times;
-}
-
-std::shared_ptr<const Reference> exact_reference(const std::string& scene_name,
-                                                 const SceneParameters& complete) {
-  const auto type = find_scene(scene_name);
-  if (!type->exact) return nullptr;
-  const auto r = std::make_shared<Reference>();
-  r->scene = scene_name;
-  r->parameters = complete;
-  r->method = r->second_method = "exact";
-  r->exact = true;
-  r->times = sample_times(complete.at("duration"));
-  for (const double time : r->times) r->positions.push_back(type->exact(complete, time));
-  r->gap.assign(r->times.size(), 0);
-  r->gap_max = r->gap;
-  r->valid_until = r->duration();
-  return r;
 }
 
 std::string reference_name(const std::string& scene, const SceneParameters& complete) {

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "harness/judge/shape.h"
 #include "harness/points/measures.h"
 #include "harness/scenes/scene.h"
 
@@ -56,10 +55,6 @@ double max_distance(const Scene& scene, const inextensible::Positions& x,
 
 constexpr double sample_interval = 0.04;  // s; every step of the usual ladders meets it
 std::vector<double> sample_times(double duration);
-
-// The motion of a scene that is known exactly, at the sample times. Null for other scenes.
-std::shared_ptr<const Reference> exact_reference(const std::string& scene,
-                                                 const SceneParameters& complete);
 
 // The file a reference of this scene is kept in: chain-n80.json, or with a hash of the parameters
 // that are not the defaults, mesh-9f3c...-n1.json of a scene made of files. Duration does not

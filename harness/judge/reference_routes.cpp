@@ -1,11 +1,16 @@
 #include "harness/judge/reference_routes.h"
 
+#include <gsl/gsl_randist.h>
+#include <gsl/gsl_rng.h>
+
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "harness/base/clock.h"
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
+#include "harness/judge/drive.h"
 #include "harness/judge/mechanics.h"
 #include "harness/scenes/pendulum.h"
 #include "solvers/registry.h"
@@ -26,8 +31,79 @@ constexpr double pendulum_tolerance = 1e-13;
 constexpr std::size_t most_samples = 50;
 constexpr double usual_finest = sample_interval / 640;  // s, of scenes that are no pendulum
 
+// A route that steps.
+struct Route {
+  std::string solver;
+  double limit;  // of strain
+  int order;     // of the error that Richardson's rule takes away
+  inextensible::Settings settings = {};
+
+  std::string name() const { return solver + ", strain limit " + number_text(limit); }
+};
+
+std::unique_ptr<inextensible::Stepper> stepper_of(const Route& route, const Scene& scene) {
+  return inextensible::make_stepper(route.solver, scene.problem, {route.limit, 1, route.settings});
+}
+
+// This is the one place that names methods: which to trust for a scene is the maintainer's
+// judgement, which no property of a row can replace.
+const inextensible::Settings some_passes{{"min_iterations", 1.0}, {"smoothing_sweeps", 30.0}};
 // Second route of a pendulum, beside its angles.
 const Route smooth_route{"rattle", 1e-12, 2};
+// Where a collider makes kinks neither route is better than first order.
+const Route contact_route{"rattle", 1e-9, 1};
+// RATTLE does not survive a J W J^T that is singular at the start (a row straight between its pins:
+// the patch); BDF2 takes its place then, at a limit that keeps off the singularity.
+const Route singular_route{"fast_projection@bdf2", 1e-6, 1, some_passes};
+// Forces at the end of a step are for scenes that come to rest: what a limit of strain leaves to
+// chance has to be small beside the creep of cloth that hangs by friction.
+const inextensible::Settings one_projection{{"min_iterations", 1.0}};
+const Route implicit_route{"fast_projection@bdf2", 1e-5, 1, one_projection};
+// Edges as stiff springs, solved with all other forces at once: strains of 1e-4 under the weight of
+// the whole scene.
+constexpr double spring_stiffness = 1e4;  // over the weight
+// Friction inside the solve is no smooth function of the start, and RATTLE's small steps along old
+// directions get stuck on it; the passes that correct it set the limit.
+const Route contact_inside_route{"fast_projection@bdf2", 1e-5, 1, some_passes};
+
+// The routes of a scene that is no pendulum, in steps of h seconds. The second one has the first
+// one's limit; they differ in the direction of constraint forces, the velocity's place in the step
+// and the linear solver. The third, of scenes with implicit forces, knows no constraints.
+struct Routes {
+  Route first, second;
+  std::optional<Route> third;
+};
+
+Routes contact_routes(const Scene& scene, double h) {
+  const inextensible::Problem& problem = *scene.problem;
+  if (problem.implicit_forces()) {
+    const double weight = problem.total_mass() * problem.gravity().norm();
+    Routes routes{implicit_route, {"icd", implicit_route.limit, 1, one_projection}, {}};
+    if (weight > 0)
+      routes.third = {"implicit_springs@bdf2", 0.01, 2, {{"stiffness", spring_stiffness * weight}}};
+    return routes;
+  }
+  Route first = contact_inside_route;
+  if (!problem.contact_inside()) {
+    State state = scene.start;
+    first = stepper_of(contact_route, scene)->advance(state, h) ? contact_route : singular_route;
+  }
+  return {first, {"icd", first.limit, 1}, {}};
+}
+
+// Starts off the scene's by at most so many metres a coordinate, at random; pinned vertices stay.
+std::vector<State> moved_starts(const Scene& scene, double by) {
+  const std::unique_ptr<gsl_rng, decltype(&gsl_rng_free)> random(gsl_rng_alloc(gsl_rng_mt19937),
+                                                                 gsl_rng_free);
+  std::vector<State> starts(moved_start_count, scene.start);
+  for (State& moved : starts) {
+    for (Eigen::Index i = 0; i < moved.x.size(); ++i)
+      moved.x.data()[i] += by * gsl_ran_flat(random.get(), -1, 1);
+    for (const int vertex : scene.problem->pinned())
+      moved.x.col(vertex) = scene.start.x.col(vertex);
+  }
+  return starts;
+}
 
 Pendulum pendulum_of(const Scene& scene, double disturbance) {
   const auto& problem = *scene.problem;
@@ -91,17 +167,26 @@ class ReferenceMaker {
                    int start) {
     const std::string name = route.name() + ", step " + number_text(h, 17) + " s, start " +
                              std::to_string(start) + ", " + std::to_string(samples) + " samples";
-    const std::vector<double> times(r_.times.begin(),
-                                    r_.times.begin() + static_cast<std::ptrdiff_t>(samples));
-    return runs_
-        .run(name,
-             [&] {
-               RouteRun run;
-               follow(scene_, from, route, h, times, runs_,
-                      [&](const State& state) { run.path.push_back(state.x); });
-               return run;
-             })
-        .path;
+    const auto compute = [&] {
+      const auto stepper = stepper_of(route, scene_);
+      State state = start_from(*scene_.problem, from, *inextensible::find_backend(route.solver), h);
+      const std::string words = route.solver + ", h = 1/" + number_text(std::round(1 / h)) + " s ";
+      const long per_sample = std::lround(sample_interval / h);
+      runs_.tell(words + "...");
+      RouteRun run;
+      const DriveState driven = drive(*stepper, state, {h, per_sample * static_cast<long>(samples)},
+                                      [&](const State& now, const DriveState& so_far) {
+                                        if (so_far.steps % per_sample == 0)
+                                          run.path.push_back(now.x);
+                                        return true;
+                                      });
+      if (driven.end == DriveState::End::refused)
+        runs_.tell(
+            words + "stopped before t = " + number_text(r_.times[driven.steps / per_sample]) +
+            " s: " + inextensible::to_string(driven.result.status) + ", " + driven.result.detail);
+      return run;
+    };
+    return runs_.run(name, compute).path;
   }
   const Path& path(const Route& route, double h) {
     return path(route, h, r_.times.size(), scene_.start, 0);
@@ -180,14 +265,11 @@ class ReferenceMaker {
     std::vector<GapPart> parts{{"routes", &fine, &second},
                                {"half_step", &fine, &half},
                                {"second_half_step", &second, &second_half}};
-    const auto starts = moved_starts(scene_, (settles ? visible_move : perturbation) * scene_.size,
-                                     moved_start_count);
-    for (int k = 0; k < moved_start_count; ++k) {
-      const State& start = starts[static_cast<std::size_t>(k)];
-      const double step = settles ? 2 * h : h;
+    int moved = 0;
+    for (const State& start :
+         moved_starts(scene_, (settles ? visible_move : perturbation) * scene_.size))
       parts.push_back({"moved_start", settles ? &half : &fine,
-                       &path(first, step, r_.times.size(), start, k + 1)});
-    }
+                       &path(first, settles ? 2 * h : h, r_.times.size(), start, ++moved)});
     const bool springs = third && h < quick_finest;
     if (springs) parts.push_back({"third_route", &fine, &path(*third, 8 * h)});
     add_gaps(parts);
@@ -311,6 +393,28 @@ class ReferenceMaker {
 
 }  // namespace
 
+RouteRuns::RouteRuns(Tell tell, const std::string& out, const nlohmann::json& header)
+    : tell_(std::move(tell)), journal_(out) {
+  if (!journal_->damage().empty())
+    tell_(journal_->path() + ", " + journal_->damage() + ": what is damaged is run again");
+  const std::size_t done = journal_->known().size();
+  const bool same = journal_->header() == header;
+  if (done > 0)
+    tell_(same ? "continues after " + std::to_string(done) + " runs that are done"
+               : "runs of another build or --finest are dropped");
+  if (!same) journal_->start(header);
+}
+
+const RouteRun& RouteRuns::run(const std::string& name, const std::function<RouteRun()>& compute) {
+  if (const auto known = known_.find(name); known != known_.end()) return known->second;
+  if (const nlohmann::json* kept = journal_ ? journal_->find(name) : nullptr)
+    return known_[name] = {path_of(kept->at("path")), kept->at("energy_drift").get<double>()};
+  const RouteRun& run = known_[name] = compute();
+  if (!journal_) return run;
+  journal_->add(name, {{"energy_drift", run.energy_drift}, {"path", rows_of(run.path)}});
+  return run;
+}
+
 Reference compute_reference(const std::string& scene, const SceneParameters& complete,
                             double finest, RouteRuns& runs) {
   return ReferenceMaker(scene, complete, runs).by_two_routes(finest);
@@ -325,8 +429,7 @@ double reference_seconds(const std::string& name, const SceneParameters& complet
   const auto [first, second, third] = contact_routes(scene, h);
   // runs: how many from start to end, one at this step counting 1.
   const auto seconds = [&](const Route& route, double step, double runs) {
-    const auto stepper =
-        inextensible::make_stepper(route.solver, scene.problem, {route.limit, 1, route.settings});
+    const auto stepper = stepper_of(route, scene);
     State state = scene.start;
     stepper->advance(state, step);
     const auto begin = Clock::now();

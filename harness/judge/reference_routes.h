@@ -8,11 +8,9 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "harness/base/journal.h"
 #include "harness/judge/reference.h"
-#include "solvers/methods/backend.h"
 
 namespace harness {
 
@@ -33,7 +31,6 @@ class RouteRuns {
 
   // The run of that name: a kept one, or what `compute` returns. The reference stays valid.
   const RouteRun& run(const std::string& name, const std::function<RouteRun()>& compute);
-  const std::map<std::string, RouteRun>& known() const { return known_; }  // asked for so far
   void tell(const std::string& line) const { tell_(line); }
   void remove() { journal_->remove(); }  // the reference is written
 
@@ -42,38 +39,6 @@ class RouteRuns {
   std::optional<Journal> journal_;
   std::map<std::string, RouteRun> known_;
 };
-
-// A route that steps.
-struct Route {
-  std::string solver;
-  double limit;  // of strain
-  int order;     // of the error that Richardson's rule takes away
-  inextensible::Settings settings = {};
-
-  std::string name() const;  // "rattle, strain limit 1e-09"
-};
-
-// The routes of a scene that is no pendulum, in steps of h seconds. The second one has the first
-// one's limit; they differ in the direction of constraint forces, the velocity's place in the step
-// and the linear solver. The third, of scenes with implicit forces, knows no constraints.
-struct Routes {
-  Route first, second;
-  std::optional<Route> third;
-};
-Routes contact_routes(const Scene& scene, double h);
-
-// At each sample time.
-using SampleVisitor = std::function<void(const inextensible::State& state)>;
-
-// A route's run to the last of the sample times, or up to where it fails; h divides the sample
-// interval.
-void follow(const Scene& scene, const inextensible::State& start, const Route& route, double h,
-            const std::vector<double>& times, const RouteRuns& runs, const SampleVisitor& visit);
-
-// Starts off the scene's by at most so many metres a coordinate, at random; pinned vertices stay.
-std::vector<inextensible::State> moved_starts(const Scene& scene, double by, int count);
-
-// ---- What is made of runs ----
 
 // Computes the reference of a scene by both routes. finest: the smallest step of step halving, s; 0
 // chooses by the scene. The third route is left out of quick ones, steps of quick_finest and more.

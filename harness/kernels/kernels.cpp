@@ -28,7 +28,7 @@
 #include "harness/base/timing_lock.h"
 #include "harness/points/context.h"
 #include "harness/scenes/scene.h"
-#include "solvers/linear/spd_solvers.h"
+#include "solvers/linear/spd_solver.h"
 #include "solvers/problem/forces.h"
 #include "solvers/registry.h"
 #include "solvers/systems/constraint_system.h"

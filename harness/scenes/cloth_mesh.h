@@ -1,4 +1,5 @@
-// Quads and triangles of cloth, cut finer, and which of their sides are warp and weft.
+// A scene's cloth from a mesh of quads and triangles: cut finer, which of their sides are warp and
+// weft, and a fabric's forces in physical units.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,6 +7,8 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "harness/scenes/meshes.h"
 
 namespace harness {
 
@@ -19,6 +22,7 @@ struct ClothMesh {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::array<int, 4>> quads;      // corners in turn
   std::vector<std::array<int, 3>> triangles;  // what is left
+  std::vector<char> held = {};                // of each vertex, whether a scene pins it
 };
 
 // Quads of a file's faces: triangles are joined to quads where two make one whose angles are within
@@ -42,5 +46,22 @@ std::vector<std::array<int, 3>> yarns_of(const ClothMesh& mesh);
 
 // Each vertex's share of the faces around it.
 std::vector<double> areas(const ClothMesh& mesh);
+
+// ---- The scene ----
+
+// The scene's own parameters, and after them those that cloth_draft reads.
+ParameterInfos with_cloth_parameters(const ParameterInfos& own, const ClothDefaults& cloth,
+                                     double duration);
+
+// The cloth is at rest, and unstretched, as the mesh lies. Sides of quads keep their length;
+// diagonals of quads, and the other sides of triangles, are springs of the shear stiffness (each
+// diagonal bears G (l gamma)^2 / 4 of a square sheared by gamma); yarns bend, straight at rest;
+// all forces act as they are at the end of a step. Parameters: density (kg/m^2), gravity, shear
+// (N/m), bending (N m), drag (N s/m^3), duration. Left to the caller: the scene's size, and what is
+// not at rest there.
+Draft cloth_draft(const ClothMesh& mesh, const SceneParameters& p);
+
+// Its vertices and constraints.
+std::pair<int, int> count_cloth(const ClothMesh& mesh);
 
 }  // namespace harness

@@ -1,7 +1,10 @@
-// Scenes of a square of cloth.
+// Scenes of a square of cloth, and of a disc.
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
+#include <string>
 
+#include "harness/scenes/cloth_mesh.h"
 #include "harness/scenes/fabrics.h"
 #include "harness/scenes/meshes.h"
 #include "solvers/problem/triangle_collider.h"
@@ -27,14 +30,15 @@ Eigen::Matrix2Xd waves(int n, double l, double slope) {
   return p;
 }
 
-// In waves, `folds` steep, the lowest point at the height y. A sum of two curves keeps the length
-// of every link: a Chebyshev net.
-void fold(Scene& scene, const SceneParameters& p, double y) {
-  const int n = whole(p);
-  const Eigen::Matrix2Xd wave = waves(n, square_link(p), p.at("folds"));
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j)
-      scene.start.x.col(i * n + j) << wave(0, j), y + wave(1, j) + wave(1, i), wave(0, i);
+// A sum of two curves, which keeps the length of every link: a Chebyshev net. The lowest point is
+// at the height y, the middle `aside` off the axis along x, and half as far along -z.
+void lay(Scene& scene, const Eigen::Matrix2Xd& weft, const Eigen::Matrix2Xd& warp, double y,
+         double aside = 0) {
+  const Eigen::Index n = weft.cols();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j)
+      scene.start.x.col(i * n + j) << weft(0, j) + aside, y + weft(1, j) + warp(1, i),
+          warp(0, i) - 0.5 * aside;
   }
 }
 
@@ -43,7 +47,7 @@ void fold(Scene& scene, const SceneParameters& p, double y) {
 // y.
 void place_unevenly(Scene& scene, const SceneParameters& p, double y) {
   const int n = whole(p);
-  const double l = square_link(p), side = p.at("side"), aside = value_or_zero(p, "off_axis");
+  const double l = square_link(p), side = p.at("side");
   const auto curve = [&](double count, double phase) {
     const double slope = 2 * std::numbers::pi * count * p.at("waves") / side;
     Eigen::Matrix2Xd at(2, n);  // along, up
@@ -57,12 +61,7 @@ void place_unevenly(Scene& scene, const SceneParameters& p, double y) {
     at.row(1).array() -= at.row(1).minCoeff();
     return at;
   };
-  const Eigen::Matrix2Xd weft = curve(2, 0.7), warp = curve(1.5, 2.1);
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j)
-      scene.start.x.col(i * n + j) << weft(0, j) + aside, y + weft(1, j) + warp(1, i),
-          warp(0, i) - 0.5 * aside;
-  }
+  lay(scene, curve(2, 0.7), curve(1.5, 2.1), y, value_or_zero(p, "off_axis"));
   scene.mirrors.clear();
 }
 
@@ -75,31 +74,20 @@ void add_ball(Draft& cloth, const SceneParameters& p) {
   cloth.parts.contact_inside = p.at("contact") != 0;
 }
 
-void add_drag(Draft& cloth, const SceneParameters& p) {
-  const double l = square_link(p), drag = value_or_zero(p, "drag");
-  if (drag > 0) cloth.parts.drag.assign(cloth.parts.mass.size(), drag * l * l);
-}
-
-// Above the ball. A fabric has its own forces, in physical units, at the end of the step: each
-// diagonal of a quad, as a spring of stiffness G, gives the cloth the shear stiffness G, since
-// turned by gamma both change by l gamma / sqrt(2), and bear G (l gamma)^2 / 2 together.
-Scene build_drape(const SceneParameters& given) {
-  SceneParameters p = given;
-  const bool fabric = p.contains("density"), folded = p.contains("folds");
-  if (fabric) p["mass"] = p.at("density") * p.at("side") * p.at("side");
-  const double y = p.at("radius") + p.at("gap"), bending = value_or_zero(p, "bending");
+// Above the ball.
+Scene build_drape(const SceneParameters& p) {
+  const double y = p.at("radius") + p.at("gap");
   Draft cloth = vertex_square(p, y);
-  if (bending > 0) bend_yarns(cloth, p, bending);
-  add_drag(cloth, p);
   if (p.contains("waves")) place_unevenly(cloth.scene, p, y);
-  if (folded) {
-    if (p.at("folds") > 0) fold(cloth.scene, p, y);
+  if (p.contains("folds")) {
+    const Eigen::Matrix2Xd wave = waves(whole(p), square_link(p), p.at("folds"));
+    if (p.at("folds") > 0) lay(cloth.scene, wave, wave, y);
     cloth.scene.start.v.row(1).setConstant(-p.at("speed"));
     // For speed at sizes at which the start's acceleration would take longer to find than a step,
     // and a few steps only, whose path is compared with nothing.
     cloth.scene.staggered = false;
   }
-  cloth.parts.implicit_forces = fabric || value_or_zero(p, "implicit") != 0;
+  if (value_or_zero(p, "implicit") != 0) cloth.parts.implicit_forces = true;
   add_ball(cloth, p);
   return finished(std::move(cloth));
 }
@@ -120,15 +108,10 @@ double stopping_distance(const SceneParameters& p) {
 }
 
 // A fabric in air that swings down from two corners, in waves, which leave no symmetry.
-Scene build_curtain(const SceneParameters& given) {
-  SceneParameters p = given;
-  p["mass"] = p.at("density") * p.at("side") * p.at("side");
+Scene build_curtain(const SceneParameters& p) {
   Draft cloth = vertex_square(p, 0);
-  bend_yarns(cloth, p, p.at("bending"));
-  add_drag(cloth, p);
   place_unevenly(cloth.scene, p, 0);
   cloth.parts.pinned = {cloth.scene.corners[0], cloth.scene.corners[1]};
-  cloth.parts.implicit_forces = true;
   return finished(std::move(cloth));
 }
 
@@ -174,7 +157,6 @@ Scene build_hung_patch(const SceneParameters& p) {
     x << x.x(), -below * std::cos(tilt), below * std::sin(tilt);
   }
   cloth.parts.pinned = {scene.corners[0], scene.corners[1]};
-  add_drag(cloth, p);
   const int n = whole(p);
   scene.marks = {{"top_row", n / 2, 0}, {"lower_edge", (n - 1) * n + n / 2, -side}};
   scene.mirrors.pop_back();
@@ -201,47 +183,36 @@ ParameterInfos drape_parameters(const ParameterInfos& cloth, const ParameterInfo
        {{"radius", 0.25, "of the sphere, m; 0: no collider at all", zero_too, 1e6},
         {"subdivisions", 3, "of the icosahedron; 3: 1,280 triangles", 0, 6, true},
         {"gap", 0.001, "between sphere and cloth at the start, m", zero_too, 1e6},
-        {"friction", 0.3, "Coulomb coefficient", zero_too, 1e3},
+        friction_info(0.3),
         {"contact", 1,
          "1: enforced together with edges; 0: in a pass of its own after that, as in the paper",
          zero_too, 1, true},
         duration_info(duration)}});
 }
 
-// density in kg/m^2, bending in N m, shear in N/m.
-SceneType fabric_on_ball(const char* name, const char* summary, double density, double bending,
-                         double shear) {
-  return {
-      .name = name,
-      .summary = summary,
-      .parameters = drape_parameters(
-          {{"n", 71, "vertices along each side", 3, 4000, true},
-           {"side", 1, "m", 0, 1e6},
-           {"density", density, "kg/m^2", 0, 1e4},
-           gravity_info(),
-           {"shear", shear, "shear stiffness, N/m; 0: none", zero_too, 1e9},
-           {"bending", bending, "bending rigidity of warp and weft, N m; 0: none", zero_too, 1e6}},
-          {{"drag", 0.05, "of still air, N s/m^3: force per area and speed; 0: none", zero_too,
-            1e6}}),
-      .build = build_drape,
-      .counts = count_square,
-      .like = "drape"};
+ParameterInfos fabric_square(double n, const ClothDefaults& fabric) {
+  return joined({{{"n", n, "vertices along each side", 3, 4000, true}, {"side", 1, "m", 0, 1e6}},
+                 fabric_parameters(fabric)});
 }
 
-SceneType measured_fabric(const char* name, const char* summary, const Fabric& cloth) {
-  return fabric_on_ball(name, summary, cloth.density, cloth.bending, fabric_shear);
+SceneType fabric_on_ball(const char* name, const char* summary, const ClothDefaults& fabric) {
+  return {.name = name,
+          .summary = summary,
+          .parameters = drape_parameters(fabric_square(71, fabric), {}),
+          .build = build_drape,
+          .counts = count_square,
+          .like = "drape"};
+}
+
+SceneType measured_fabric(const char* name, const char* summary, std::string_view cloth) {
+  const Fabric& measured = fabric(cloth);
+  return fabric_on_ball(name, summary, {measured.density, fabric_shear, measured.bending, 0.05});
 }
 
 // Stiff cotton in air, whose start has waves.
-ParameterInfos stiff_cotton(int n) {
-  return {{"n", static_cast<double>(n), "vertices along each side", 3, 4000, true},
-          {"side", 1, "m", 0, 1e6},
-          {"density", 0.15, "kg/m^2", 0, 1e4},
-          gravity_info(),
-          {"shear", fabric_shear, "shear stiffness, N/m; 0: none", zero_too, 1e9},
-          {"bending", 5e-4, "bending rigidity of warp and weft, N m; 0: none", zero_too, 1e6},
-          {"drag", 4, "of still air, N s/m^3: force per area and speed; 0: none", zero_too, 1e6},
-          {"waves", 0.01, "amplitude of the start's waves, m; 0: flat", zero_too, 0.05}};
+ParameterInfos stiff_cotton(double n) {
+  return joined({fabric_square(n, {0.15, fabric_shear, 5e-4, 4}),
+                 {{"waves", 0.01, "amplitude of the start's waves, m; 0: flat", zero_too, 0.05}}});
 }
 
 // Known to its end: air and bending let it fold in one way only.
@@ -284,6 +255,75 @@ SceneType sliding_block() {
           .like = "drape"};
 }
 
+// ---- Cusick's drape test ----
+// The quads of a square grid whose middle lies in the disc: its area is the disc's, but for what
+// the grid leaves open. In the plane y = 0, pinned where the table is.
+ClothMesh disc_of(const SceneParameters& p) {
+  const auto n = whole(p);
+  const double radius = p.at("radius"), link = 2 * radius / (n - 1);
+  const auto place = [&](double index) { return link * (index - 0.5 * (n - 1)); };
+  const auto quad = [&](int i, int j) {
+    return i >= 0 && j >= 0 && i + 1 < n && j + 1 < n &&
+           std::hypot(place(i + 0.5), place(j + 0.5)) <= radius;
+  };
+  ClothMesh disc;
+  std::vector<int> number(n * n, -1);
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      if (!quad(i, j) && !quad(i - 1, j) && !quad(i, j - 1) && !quad(i - 1, j - 1)) continue;
+      number[i * n + j] = static_cast<int>(disc.vertices.size());
+      disc.vertices.emplace_back(place(j), 0, place(i));
+      disc.held.push_back(std::hypot(place(i), place(j)) <= p.at("table"));
+    }
+  }
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      const int* at = number.data() + i * n + j;
+      if (quad(i, j)) disc.quads.push_back({at[0], at[1], at[n + 1], at[n]});
+    }
+  }
+  return disc;
+}
+
+// Height at the start, m: a few waves of unlike length, so that no symmetry holds folds back.
+double unevenness(const SceneParameters& p, double x, double z) {
+  const double r = std::hypot(x, z), table = p.at("table"), angle = std::atan2(z, x);
+  const double out = std::max(0.0, (r - table) / (p.at("radius") - table));
+  return p.at("uneven") * out * out *
+         (std::cos(3 * angle + 0.4) + std::cos(5 * angle + 1.9) + std::cos(7 * angle + 0.9));
+}
+
+Scene build_cusick(const SceneParameters& p) {
+  if (!(p.at("table") < p.at("radius")))
+    throw std::invalid_argument("a table of " + std::to_string(p.at("table")) +
+                                " m under a disc of " + std::to_string(p.at("radius")) +
+                                " m: nothing hangs over");
+  Draft draft = cloth_draft(disc_of(p), p);
+  inextensible::Positions& x = draft.scene.start.x;
+  for (Eigen::Index v = 0; v < x.cols(); ++v) x(1, v) = unevenness(p, x(0, v), x(2, v));
+  draft.scene.size = 2 * p.at("radius");
+  return finished(std::move(draft));
+}
+
+SceneType cusick() {
+  const Fabric& cotton = fabric("cotton");
+  return {
+      .name = "cusick",
+      .summary =
+          "a disc of cotton broadcloth hangs over the edge of a round table (Cusick's drape "
+          "test)",
+      .parameters = with_cloth_parameters(
+          {{"n", 31, "vertices along the disc's diameter", 7, 1000, true},
+           {"radius", 0.15, "of the disc, m", 0, 1e6},
+           {"table", 0.09, "radius on which it is held, m", 0, 1e6},
+           {"uneven", 2e-4, "height of waves along the rim at the start, m", zero_too, 1e-2}},
+          {.density = cotton.density, .shear = fabric_shear, .bending = cotton.bending, .drag = 1},
+          1.5),
+      .build = build_cusick,
+      .counts = [](const SceneParameters& p) { return count_cloth(disc_of(p)); },
+      .like = "patch"};
+}
+
 }  // namespace
 
 std::vector<SceneType> cloth_scenes() {
@@ -299,15 +339,14 @@ std::vector<SceneType> cloth_scenes() {
       fabric_on_ball("fabric_drape",
                      "the drape with a fabric's weight, shear and bending in physical units, "
                      "implicit, and air",
-                     0.15, 1e-5, 20),
+                     {0.15, 20, 1e-5, 0.05}),
       settling_drape(),
       curtain(),
       sliding_block(),
-      measured_fabric("cotton_drape", "fabric_drape of cotton broadcloth, as measured",
-                      fabric("cotton")),
-      measured_fabric("wool_drape", "fabric_drape of wool tropical, as measured", fabric("wool")),
+      measured_fabric("cotton_drape", "fabric_drape of cotton broadcloth, as measured", "cotton"),
+      measured_fabric("wool_drape", "fabric_drape of wool tropical, as measured", "wool"),
       measured_fabric("polyester_drape", "fabric_drape of polyester tropical, as measured",
-                      fabric("polyester")),
+                      "polyester"),
       {.name = "folded_drape",
        .summary =
            "the drape, from a start in folds that shear it: as hard as mid-fall, at any size",
@@ -321,11 +360,10 @@ std::vector<SceneType> cloth_scenes() {
        .like = "drape"},
       {.name = "hung_patch",
        .summary = "the patch as it hangs from two corners, brought to rest by air (Figure 1)",
-       .parameters = joined(
-           {cloth_parameters(31),
-            {{"tilt", 0.3, "out of the vertical, at the start, rad", -1.5, 1.5},
-             {"drag", 2, "of still air, N s/m^3: force per area and speed; 0: none", zero_too, 1e6},
-             duration_info(3)}}),
+       .parameters = joined({cloth_parameters(31),
+                             {{"tilt", 0.3, "out of the vertical, at the start, rad", -1.5, 1.5},
+                              drag_info(2),
+                              duration_info(3)}}),
        .build = build_hung_patch,
        .counts = count_square,
        .like = "patch"},
@@ -333,7 +371,8 @@ std::vector<SceneType> cloth_scenes() {
        .summary = "a square of cloth, pinned at two corners of one edge, swings down (Figure 1)",
        .parameters = joined({cloth_parameters(31), {duration_info()}}),
        .build = build_patch,
-       .counts = count_square}};
+       .counts = count_square},
+      cusick()};
 }
 
 }  // namespace harness

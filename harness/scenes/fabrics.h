@@ -34,8 +34,7 @@ inline constexpr std::array<Fabric, 4> fabrics = [] {
 }();
 
 inline const Fabric& fabric(std::string_view name) {  // throws std::out_of_range
-  const auto* const found = std::find_if(fabrics.begin(), fabrics.end(),
-                                         [&](const Fabric& row) { return row.name == name; });
+  const auto* const found = std::ranges::find(fabrics, name, &Fabric::name);
   if (found == fabrics.end()) throw std::out_of_range("no fabric " + std::string(name));
   return *found;
 }

@@ -1,5 +1,4 @@
-#include "harness/scenes/mesh_scenes.h"
-
+// Cloth from files.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cctype>
@@ -12,7 +11,7 @@
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/text.h"
-#include "harness/scenes/cloth_draft.h"
+#include "harness/scenes/cloth_mesh.h"
 #include "solvers/problem/triangle_collider.h"
 
 namespace harness {
@@ -120,7 +119,7 @@ MeshParts parts_of(const std::string& name) {
 
 // The files, read once; scenes of all parameters are made of them.
 struct MeshModel {
-  std::string name, identity;
+  std::string identity;
   MeshParts parts;
   ClothMesh cloth;
   inextensible::TriangleMesh body;
@@ -149,7 +148,6 @@ inextensible::TriangleMesh body_of(const MeshFile& file) {
 
 std::shared_ptr<const MeshModel> read_model(const std::string& name) {
   auto model = std::make_shared<MeshModel>();
-  model->name = name;
   model->parts = parts_of(name);
   const MeshParts& parts = model->parts;
   std::string content = name.substr(std::min(name.find(",pins="), name.size()));
@@ -157,20 +155,20 @@ std::shared_ptr<const MeshModel> read_model(const std::string& name) {
   content = read_file(parts.file, "mesh") + content;
   if (!parts.body.empty()) content += read_file(parts.body, "mesh");
   model->identity = fnv1a(content);
-  model->cloth = cloth_of(read_mesh_file(model->parts.file), model->parts.file);
-  if (!model->parts.body.empty()) {
-    model->body = body_of(read_mesh_file(model->parts.body));
+  model->cloth = cloth_of(read_mesh_file(parts.file), parts.file);
+  if (!parts.body.empty()) {
+    model->body = body_of(read_mesh_file(parts.body));
     try {
       (void)inextensible::TriangleCollider(model->body, 0);
     } catch (const std::invalid_argument& error) {
-      throw UsageError("'" + model->parts.body + "' is no body to collide with: " + error.what());
+      throw UsageError("'" + parts.body + "' is no body to collide with: " + error.what());
     }
   }
   const auto& x = model->cloth.vertices;
   const bool holds = std::any_of(x.begin(), x.end(), [&](auto& v) { return model->pinned(v); });
-  if (!model->parts.pins.empty() && !holds)
+  if (!parts.pins.empty() && !holds)
     throw UsageError("scene '" + name + "': no vertex is where the pins are");
-  if (!holds && model->parts.body.empty())
+  if (!holds && parts.body.empty())
     throw UsageError("scene '" + name +
                      "': nothing is pinned and nothing is below; add ,pins=y>... or ,body=FILE");
   return model;
@@ -183,9 +181,9 @@ Eigen::Vector3d placed(const Eigen::Vector3d& x, const SceneParameters& p) {
   return s * x;
 }
 
-PinnedMesh cloth_for(const MeshModel& model, const SceneParameters& p) {
-  PinnedMesh cloth{refined(model.cloth, whole(p)), {}};
-  for (Eigen::Vector3d& v : cloth.mesh.vertices) {
+ClothMesh cloth_for(const MeshModel& model, const SceneParameters& p) {
+  ClothMesh cloth = refined(model.cloth, whole(p));
+  for (Eigen::Vector3d& v : cloth.vertices) {
     cloth.held.push_back(model.pinned(v));
     v = placed(v, p);
   }
@@ -232,7 +230,7 @@ SceneType mesh_scene(const std::string& name) {
                {"scale", 1, "m per unit of the files", 0, 1e6},
                {"up", 1, "which of the files' axes is up: 1 is y, 2 is z", 1, 2, true},
                {"friction", 0.3, "Coulomb coefficient of the body", zero_too, 1e3}},
-              {.density = 0.15, .shear = 20, .bending = 1e-5, .drag = 0.05, .duration = 1}),
+              {.density = 0.15, .shear = 20, .bending = 1e-5, .drag = 0.05}, 1),
           .build = [model](const SceneParameters& p) { return build_mesh(*model, p); },
           .counts = [model](const SceneParameters& p) { return count_cloth(cloth_for(*model, p)); },
           .like = model->parts.body.empty() ? "patch" : "drape",

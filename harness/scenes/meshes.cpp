@@ -5,19 +5,19 @@
 namespace harness {
 namespace {
 
-// Springs of one stiffness on both diagonals of each quad.
-inextensible::Springs diagonals(int n, double link, double stiffness) {
-  inextensible::Springs springs;
+// Bends every warp and weft yarn of a square: `rigidity` of the cloth, N m, each yarn's is that
+// times the width that falls to it. Along the edges half a width.
+void bend_yarns(inextensible::ProblemParts& parts, int n, double l, double rigidity) {
   const auto vertex = [n](int i, int j) { return i * n + j; };
-  for (int i = 0; i + 1 < n; ++i) {
-    for (int j = 0; j + 1 < n; ++j) {
-      springs.edges.push_back({vertex(i, j), vertex(i + 1, j + 1)});
-      springs.edges.push_back({vertex(i, j + 1), vertex(i + 1, j)});
+  for (int i = 0; i < n; ++i) {
+    const double width = i == 0 || i == n - 1 ? 0.5 * l : l;
+    for (int j = 0; j + 2 < n; ++j) {
+      parts.bending.push_back(inextensible::yarn_bending(vertex(i, j), vertex(i, j + 1),
+                                                         vertex(i, j + 2), l, l, rigidity * width));
+      parts.bending.push_back(inextensible::yarn_bending(vertex(j, i), vertex(j + 1, i),
+                                                         vertex(j + 2, i), l, l, rigidity * width));
     }
   }
-  springs.rest_length.assign(springs.edges.size(), std::sqrt(2.0) * link);
-  springs.stiffness.assign(springs.edges.size(), stiffness);
-  return springs;
 }
 
 }  // namespace
@@ -60,7 +60,9 @@ Draft vertex_square(const SceneParameters& p, double y) {
   Draft square;
   inextensible::ProblemParts& parts = square.parts;
   Scene& scene = square.scene;
-  parts.mass.assign(n * n, p.at("mass") / (n * n));
+  const bool fabric = p.contains("density");
+  const double mass = fabric ? p.at("density") * side * side : p.at("mass");
+  parts.mass.assign(n * n, mass / (n * n));
   parts.gravity = {0, -value_or_zero(p, "gravity"), 0};
   scene.start.x.resize(3, n * n);
   scene.start.v.setZero(3, n * n);
@@ -82,33 +84,29 @@ Draft vertex_square(const SceneParameters& p, double y) {
       if (i + 1 < n) constrain(vertex(i, j), vertex(i + 1, j));  // warp
     }
   }
-  if (p.at("shear") > 0) parts.shear = diagonals(n, l, p.at("shear"));
+  inextensible::Springs diagonals;
+  for (int i = 0; i + 1 < n; ++i) {
+    for (int j = 0; j + 1 < n; ++j) {
+      const int a = vertex(i, j), b = vertex(i, j + 1), c = vertex(i + 1, j),
+                d = vertex(i + 1, j + 1);
+      diagonals.edges.insert(diagonals.edges.end(), {{a, d}, {b, c}});
+      scene.triangles.insert(scene.triangles.end(), {{a, b, c}, {d, c, b}});
+    }
+  }
+  if (p.at("shear") > 0) {
+    diagonals.rest_length.assign(diagonals.edges.size(), std::sqrt(2.0) * l);
+    diagonals.stiffness.assign(diagonals.edges.size(), p.at("shear"));
+    parts.shear = std::move(diagonals);
+  }
+  const double bending = value_or_zero(p, "bending"), drag = value_or_zero(p, "drag");
+  if (bending > 0) bend_yarns(parts, n, l, bending);
+  if (drag > 0) parts.drag.assign(n * n, drag * l * l);
+  parts.implicit_forces = fabric;
   scene.duration = p.at("duration");
   scene.size = side;
   scene.mirrors = {std::move(left_right), std::move(front_back)};
   scene.corners = {vertex(0, 0), vertex(0, n - 1), vertex(n - 1, 0), vertex(n - 1, n - 1)};
-  for (int i = 0; i + 1 < n; ++i) {
-    for (int j = 0; j + 1 < n; ++j) {
-      scene.triangles.push_back({vertex(i, j), vertex(i, j + 1), vertex(i + 1, j)});
-      scene.triangles.push_back({vertex(i + 1, j + 1), vertex(i, j + 1), vertex(i + 1, j)});
-    }
-  }
   return square;
-}
-
-void bend_yarns(Draft& square, const SceneParameters& p, double rigidity) {
-  const int n = whole(p);
-  const double l = square_link(p);
-  const auto vertex = [n](int i, int j) { return i * n + j; };
-  for (int i = 0; i < n; ++i) {
-    const double width = i == 0 || i == n - 1 ? 0.5 * l : l;
-    for (int j = 0; j + 2 < n; ++j) {
-      square.parts.bending.push_back(inextensible::yarn_bending(
-          vertex(i, j), vertex(i, j + 1), vertex(i, j + 2), l, l, rigidity * width));
-      square.parts.bending.push_back(inextensible::yarn_bending(
-          vertex(j, i), vertex(j + 1, i), vertex(j + 2, i), l, l, rigidity * width));
-    }
-  }
 }
 
 double row_link(const SceneParameters& p) { return p.at("length") / (whole(p) - 1); }

@@ -23,12 +23,12 @@ Draft vertex_row(const SceneParameters& p);
 // n x n vertices on a horizontal square, centred over the origin at the height y (m), at rest; row
 // i goes along z, column j along x, and vertex (i, j) has the number i n + j. Warp and weft are
 // constrained; both diagonals of each quad are springs where `shear` is positive. Two mirrors: x
-// and z reversed. Parameters: n, side, mass, shear, duration, and gravity if there is any.
+// and z reversed. Parameters: n, side, mass or density, shear, duration, and gravity, bending and
+// drag if there are any. With a density it is a fabric, whose forces, in physical units, are those
+// at the end of the step: as a spring of stiffness G each diagonal gives the cloth the shear
+// stiffness G, since turned by gamma both change by l gamma / sqrt(2), and bear G (l gamma)^2 / 2
+// together.
 Draft vertex_square(const SceneParameters& p, double y);
-
-// Bends every warp and weft yarn of a square: `rigidity` of the cloth, N m, each yarn's is that
-// times the width that falls to it. Along the edges half a width.
-void bend_yarns(Draft& square, const SceneParameters& p, double rigidity);
 
 // Edge lengths of rows and squares, m.
 double row_link(const SceneParameters& p);
@@ -50,10 +50,24 @@ inline double value_or_zero(const SceneParameters& p, const char* name) {
 // To add one: a function that returns its scenes, here and in the list of scene.cpp.
 std::vector<SceneType> line_scenes();
 std::vector<SceneType> cloth_scenes();
-std::vector<SceneType> disc_scenes();
 std::vector<SceneType> worn_scenes();
 std::vector<SceneType> spinning_scenes();
 std::vector<SceneType> hanging_scenes();
+
+// ---- What is known of chains ----
+// omega_k, rad/s, k from 1 on, of the small oscillations of N equal masses on links of length l (m)
+// that hang from a point: omega_k^2 = (g / l) x_k, x_k the k-th zero of the Laguerre polynomial L_N
+// (Bernoulli 1733 for the limit of many). g: m/s^2. 1 <= mode <= masses.
+double hanging_frequency(int masses, double link, double gravity, int mode);
+
+// s, after which the free end of a chain that is folded into a U has fallen this part of the
+// length.
+//
+// With s the way of the free end over the chain's length L, v its speed and mu the mass per length,
+// the moving arm is (1 - s) L / 2 long. Without gravity, v = v_0 / sqrt(1 - s); falling from rest,
+// v^2 = g L s (2 - s) / (1 - s) (Calkin and March 1989; Schagerl et al. 1997 measured it). A chain
+// of links follows this to O(link / L), as long as several links move.
+double folded_fall_time(double part, double length, double gravity);
 
 // ---- Parameters ----
 using ParameterInfos = std::vector<SceneParameterInfo>;
@@ -65,6 +79,24 @@ inline SceneParameterInfo gravity_info(double least = -1e4) {
 }
 inline SceneParameterInfo duration_info(double seconds = 1) {
   return {"duration", seconds, "s", 0, 1e4};
+}
+inline SceneParameterInfo drag_info(double drag) {
+  return {"drag", drag, "of still air, N s/m^3: force per area and speed; 0: none", zero_too, 1e6};
+}
+inline SceneParameterInfo friction_info(double friction) {
+  return {"friction", friction, "Coulomb coefficient", zero_too, 1e3};
+}
+// Where a cloth in physical units begins.
+struct ClothDefaults {
+  double density, shear, bending, drag;  // units as below
+};
+inline ParameterInfos fabric_parameters(const ClothDefaults& cloth) {
+  return {{"density", cloth.density, "kg/m^2", 0, 1e4},
+          gravity_info(),
+          {"shear", cloth.shear, "shear stiffness, N/m; 0: none", zero_too, 1e9},
+          {"bending", cloth.bending,
+           "bending rigidity of warp and weft, straight at rest, N m; 0: none", zero_too, 1e6},
+          drag_info(cloth.drag)};
 }
 inline ParameterInfos joined(std::initializer_list<ParameterInfos> parts) {
   ParameterInfos all;

@@ -14,13 +14,6 @@ namespace harness {
 Pendulum::Pendulum(Links links, std::vector<double> angles)
     : links_(std::move(links)), state_(std::move(angles)) {
   const std::size_t n = state_.size();
-  if (n == 0 || links_.mass.size() != n || links_.length.size() != n)
-    throw std::invalid_argument("a pendulum needs a mass, a length and an angle for each link");
-  for (std::size_t i = 0; i < n; ++i) {
-    if (!(links_.mass[i] > 0) || !(links_.length[i] > 0))
-      throw std::invalid_argument("pendulum: mass or length of link " + std::to_string(i) +
-                                  " is not positive");
-  }
   state_.resize(2 * n, 0.0);
   for (auto* vector : {&scratch_.cosine, &scratch_.sine, &scratch_.diagonal, &scratch_.off,
                        &scratch_.right, &scratch_.tension}) {

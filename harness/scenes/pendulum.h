@@ -21,8 +21,8 @@ class Pendulum {
     std::vector<double> length;  // m, of links 0 ... N - 1
     double gravity = 9.81;       // m/s^2, along -y
   };
-  // angles: theta of each link from the x axis, counterclockwise, rad; at rest at time 0. Throws
-  // std::invalid_argument if shapes differ or a number is not positive.
+  // angles: theta of each link from the x axis, counterclockwise, rad; at rest at time 0. One mass,
+  // length and angle for each of one link or more; masses and lengths are positive.
   Pendulum(Links links, std::vector<double> angles);
 
   // Integrates to `time` (s, not before time()) by GSL's Runge-Kutta-Prince-Dormand pair of orders

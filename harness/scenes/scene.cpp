@@ -6,21 +6,18 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
-#include "harness/scenes/mesh_scenes.h"
 #include "harness/scenes/meshes.h"
 
 namespace harness {
-namespace {
 
-const std::vector<SceneType>& table() {
+std::span<const SceneType> scene_types() {
   static const std::vector<SceneType> types = [] {
     std::vector<SceneType> all;
-    const auto add = [&](std::vector<SceneType> family) {
-      std::move(family.begin(), family.end(), std::back_inserter(all));
+    const auto add = [&all](std::vector<SceneType> family) {
+      std::ranges::move(family, std::back_inserter(all));
     };
     add(line_scenes());
     add(cloth_scenes());
-    add(disc_scenes());
     add(worn_scenes());
     add(spinning_scenes());
     add(hanging_scenes());
@@ -29,13 +26,9 @@ const std::vector<SceneType>& table() {
   return types;
 }
 
-}  // namespace
-
-std::span<const SceneType> scene_types() { return table(); }
-
 std::shared_ptr<const SceneType> find_scene(std::string_view name) {
   if (names_mesh(name)) return std::make_shared<const SceneType>(mesh_scene(std::string(name)));
-  for (const SceneType& type : table()) {
+  for (const SceneType& type : scene_types()) {
     if (type.name == name) return {std::shared_ptr<const SceneType>(), &type};  // static
   }
   return nullptr;
@@ -43,7 +36,7 @@ std::shared_ptr<const SceneType> find_scene(std::string_view name) {
 
 std::vector<std::string> scene_kinds() {
   std::vector<std::string> kinds;
-  for (const SceneType& type : table()) {
+  for (const SceneType& type : scene_types()) {
     if (!*type.like) kinds.emplace_back(type.name);
   }
   return kinds;

@@ -53,9 +53,8 @@ struct Scene {
     double height;  // m, at which it would hang if nothing stretched
   };
   std::vector<Mark> marks;
-  // For shape statistics of a cloth: its corners, and triangles that cover it.
-  std::vector<int> corners;
-  std::vector<std::array<int, 3>> triangles;
+  std::vector<int> corners;                   // of a cloth, for statistics of its shape
+  std::vector<std::array<int, 3>> triangles;  // that cover it, all with the same side outwards
 };
 
 struct SceneType {
@@ -79,13 +78,28 @@ struct SceneType {
 };
 
 std::span<const SceneType> scene_types();
-// Also "mesh:...", see mesh_scenes.h, which throws UsageError for files that it cannot use. Null:
-// no such scene.
+// Also "mesh:...", which throws UsageError for files that it cannot use. Null: no such scene.
 std::shared_ptr<const SceneType> find_scene(std::string_view name);
 std::vector<std::string> scene_kinds();  // of all scenes, each once
 
 // The scene's parameters with `given` put in. Throws UsageError, naming the parameter, for unknown
 // or impossible ones.
 SceneParameters complete_parameters(const SceneType& type, const SceneParameters& given);
+
+// ---- Cloth from a mesh of one's own: "mesh:shirt.obj,pins=y>1.2,body=body.obj" ----
+//
+// Warp and weft are the sides of quads. Triangles that make a good quad together are taken for one,
+// and what is left of them holds with springs alone: a net of inextensible triangles would not
+// bend. A body is a closed mesh.
+
+bool names_mesh(std::string_view scene);  // "mesh:..."
+
+// The scene's name with pins ("y > 1.2", several joined by "and"; in the file's unit) and a body.
+// Throws UsageError where one is given and the scene is no mesh.
+std::string with_mesh_parts(const std::string& scene, const std::string& pins,
+                            const std::string& body);
+
+// Reads the files. Throws UsageError, naming file and place, for what can be no cloth.
+SceneType mesh_scene(const std::string& name);
 
 }  // namespace harness

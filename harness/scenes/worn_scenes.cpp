@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "harness/scenes/cloth_draft.h"
+#include "harness/scenes/cloth_mesh.h"
 #include "solvers/problem/triangle_collider.h"
 
 namespace harness {
@@ -61,16 +61,14 @@ struct Dome {
 std::vector<Ring> capped(double radius, const Dome& lower, const std::vector<Ring>& wall,
                          const Dome& upper) {
   constexpr int cap = 8;  // rings
+  const auto ring = [&](const Dome& dome, int k) -> Ring {
+    const double angle = 0.5 * pi * k / cap;
+    return {dome.y + dome.height * std::cos(angle), radius * std::sin(angle)};
+  };
   std::vector<Ring> rings;
-  for (int k = 0; k < cap; ++k) {
-    const double angle = 0.5 * pi * k / cap;
-    rings.push_back({lower.y - lower.height * std::cos(angle), radius * std::sin(angle)});
-  }
+  for (int k = 0; k < cap; ++k) rings.push_back(ring({lower.y, -lower.height}, k));
   rings.insert(rings.end(), wall.begin(), wall.end());
-  for (int k = cap; k >= 0; --k) {
-    const double angle = 0.5 * pi * k / cap;
-    rings.push_back({upper.y + upper.height * std::cos(angle), radius * std::sin(angle)});
-  }
+  for (int k = cap; k >= 0; --k) rings.push_back(ring(upper, k));
   return rings;
 }
 
@@ -93,7 +91,6 @@ std::vector<Ring> column(const SceneParameters& p) {
   constexpr double above = 0.02, below = 1.1, dome = 0.9;  // m; of the length; of the radius
   const double radius = p.at("body"), top = above, bottom = -below * p.at("length");
   std::vector<Ring> wall;
-  wall.reserve(rings);
   for (int k = 0; k < rings; ++k)
     wall.push_back({bottom + (top - bottom) * static_cast<double>(k) / rings, radius});
   return capped(radius, {bottom, dome * radius}, wall, {top, dome * radius});
@@ -131,7 +128,7 @@ inextensible::BodyMotion walking(const SceneParameters& p) {
       });
 }
 
-Draft worn(const PinnedMesh& cloth, const std::vector<Ring>& body, const SceneParameters& p) {
+Draft worn(const ClothMesh& cloth, const std::vector<Ring>& body, const SceneParameters& p) {
   Draft draft = cloth_draft(cloth, p);
   draft.parts.collider = std::make_shared<const inextensible::TriangleCollider>(
       lathed(body, whole(p, "segments")), p.at("friction"));
@@ -166,9 +163,9 @@ struct Cone {
     rows = 1 + std::max(1, static_cast<int>(std::lround(length * links / mean)));
   }
 
-  // place: x and z of an index around, on the unit circle.
+  // Held by nothing. place: x and z of an index around, on the unit circle.
   template <class Place>
-  ClothMesh mesh(const Place& place) const {
+  ClothMesh cloth(const Place& place) const {
     const double fall = std::sqrt(length * length - wider * wider);
     ClothMesh mesh;
     for (int r = 0; r < rows; ++r) {
@@ -181,48 +178,41 @@ struct Cone {
         mesh.quads.push_back({r * around + s, r * around + next, below + next, below + s});
       }
     }
+    mesh.held.assign(mesh.vertices.size(), 0);
     return mesh;
   }
 };
 
 // ---- The garment ----
-Cone skirt(const SceneParameters& p) { return Cone(p, p.at("rim"), 2 * pi, "garment"); }
+ClothMesh skirt(const SceneParameters& p) {
+  const Cone cone(p, p.at("rim"), 2 * pi, "garment");
+  return cone.cloth([&](int s) {
+    const double angle = 2 * pi * s / cone.around;
+    return std::array{std::cos(angle), std::sin(angle)};
+  });
+}
 
 Scene build_garment(const SceneParameters& p) {
   if (!(p.at("waist") < p.at("rim")))
     throw std::invalid_argument("'rim' of " + std::to_string(p.at("rim")) +
                                 " m: must be wider than the waist");
-  const Cone cone = skirt(p);
-  PinnedMesh cloth{cone.mesh([&](int s) {
-                     const double angle = 2 * pi * s / cone.around;
-                     return std::array{std::cos(angle), std::sin(angle)};
-                   }),
-                   {}};
-  cloth.held.assign(cloth.mesh.vertices.size(), 0);
-  Draft draft = worn(cloth, torso(p), p);
+  Draft draft = worn(skirt(p), torso(p), p);
   if (p.at("sway") != 0 || p.at("turn") != 0) set_moving(draft, swaying(p));
-  draft.scene.marks = {{"rim", 0, 0}, {"rim_across", cone.around / 2, 0}};
+  draft.scene.marks = {{"rim", 0, 0}, {"rim_across", whole(p) / 2, 0}};
   return finished(std::move(draft));
-}
-
-std::pair<int, int> count_garment(const SceneParameters& p) {
-  const int n = whole(p), rows = skirt(p).rows;
-  return {n * rows, n * rows + n * (rows - 1)};
 }
 
 // ---- The cape ----
 // Part of a cone about the body: the collar first, of which the vertices within `held` of its
 // middle are pinned.
-PinnedMesh cape(const SceneParameters& p) {
+ClothMesh cape(const SceneParameters& p) {
   const Cone cone(p, p.at("body") + p.at("gap"), p.at("spread"), "cape");
   const auto angle = [&](int s) {
     return p.at("spread") * (static_cast<double>(s) / (cone.around - 1) - 0.5);
   };
-  PinnedMesh cloth{cone.mesh([&](int s) {
-                     return std::array{std::sin(angle(s)), std::cos(angle(s))};
-                   }),
-                   {}};
-  cloth.held.assign(cloth.mesh.vertices.size(), 0);
+  ClothMesh cloth = cone.cloth([&](int s) {
+    return std::array{std::sin(angle(s)), std::cos(angle(s))};
+  });
   for (int s = 0; s < cone.around; ++s) cloth.held[s] = std::abs(angle(s)) <= 0.5 * p.at("held");
   return cloth;
 }
@@ -250,13 +240,13 @@ std::vector<SceneType> worn_scenes() {
             {"hips", 0.137, "radius of the body where it is widest, m", 0, 1e3},
             {"drop", 0.12, "from the waist down to the hips, m", 0, 1e3},
             {"segments", 48, "of the body around", 3, 1000, true},
-            {"friction", 0.2, "Coulomb coefficient", zero_too, 1e3},
+            friction_info(0.2),
             {"sway", 0.06, "how far the body goes to either side, m; 0: not at all", zero_too, 1e3},
             {"turn", 0.6, "how far it turns either way, rad; 0: not at all", zero_too, 10},
             {"period", 1, "of both, s", 0, 1e3}},
-           {.density = 0.15, .shear = 5, .bending = 1e-5, .drag = 0.1, .duration = 3}),
+           {.density = 0.15, .shear = 5, .bending = 1e-5, .drag = 0.1}, 3),
        .build = build_garment,
-       .counts = count_garment,
+       .counts = [](const SceneParameters& p) { return count_cloth(skirt(p)); },
        .like = "drape"},
       {.name = "cape",
        .summary =
@@ -271,11 +261,11 @@ std::vector<SceneType> worn_scenes() {
             {"body", 0.15, "radius of the body, m", 0, 1e3},
             {"gap", 0.004, "between collar and body, m", 0, 1e3},
             {"segments", 48, "of the body around", 3, 1000, true},
-            {"friction", 0.2, "Coulomb coefficient", zero_too, 1e3},
+            friction_info(0.2),
             {"walk", 0.25, "how far the body goes to either side, m", zero_too, 1e3},
             {"turn", 1.4, "how far it turns either way, rad", zero_too, 10},
             {"period", 2.5, "of both, s", 0, 1e3}},
-           {.density = 0.15, .shear = 5, .bending = 1e-5, .drag = 0.3, .duration = 5}),
+           {.density = 0.15, .shear = 5, .bending = 1e-5, .drag = 0.3}, 5),
        .build = build_cape,
        .counts = [](const SceneParameters& p) { return count_cloth(cape(p)); },
        .like = "drape"}};

@@ -1,8 +1,8 @@
-#include "solvers/linear/mixed_cholesky.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "solvers/linear/multifrontal_cholesky.h"
 
 namespace inextensible {
 namespace {

@@ -182,28 +182,36 @@ bool take_panel(const Trapezoid<Real>& front, int k, const Real* bound, Real* pi
   return true;
 }
 
-// K columns of forward substitution on the front's rows w: the triangle, then the rows below it.
-template <int K, class Real>
+// Right-hand sides have rows of one number, or of four: the factor is read once for three of them.
+template <class Real>
+using Four = typename VectorOf<Real, 4 * sizeof(Real)>::type;
+
+// K columns of forward substitution on the front's rows w, each an X: the triangle, then the rows
+// below it, single numbers several at once.
+template <int K, class X, class Real>
 void substitute_forward(const Real* l, Distance ld, int n, Real* w) {
-  Real x[K];
+  constexpr bool single = std::is_same_v<X, Real>;
+  constexpr int width = sizeof(X) / sizeof(Real), step = single ? lanes<Real> : 1;
+  X x[K];
 #pragma GCC unroll 8
-  for (int c = 0; c < K; ++c) x[c] = w[c];
+  for (int c = 0; c < K; ++c) load(w + width * c, x[c]);
 #pragma GCC unroll 8
   for (int c = 0; c < K; ++c) {
 #pragma GCC unroll 8
     for (int r = c + 1; r < K; ++r) x[r] -= l[c * ld + r] * x[c];
   }
 #pragma GCC unroll 8
-  for (int c = 0; c < K; ++c) w[c] = x[c];
-  for (int i = K; i < n; i += lanes<Real>) {
-    Lanes<Real> sum, column;
-    load(w + i, sum);
+  for (int c = 0; c < K; ++c) store(x[c], w + width * c);
+  for (int i = K; i < n; i += step) {
+    std::conditional_t<single, Lanes<Real>, X> sum;
+    load(w + width * i, sum);
 #pragma GCC unroll 8
     for (int c = 0; c < K; ++c) {
+      std::conditional_t<single, Lanes<Real>, Real> column;
       load(l + c * ld + i, column);
       sum -= column * x[c];
     }
-    store(sum, w + i);
+    store(sum, w + width * i);
   }
 }
 
@@ -235,31 +243,7 @@ void substitute_back(const Real* l, Distance ld, int n, Real* w) {
   }
 }
 
-// The same of rows of four numbers: the factor is read once for three right-hand sides.
-template <class Real>
-using Four = typename VectorOf<Real, 4 * sizeof(Real)>::type;
-
-template <int K, class Real>
-void substitute_fours_forward(const Real* l, Distance ld, int n, Real* w) {
-  Four<Real> x[K];
-#pragma GCC unroll 8
-  for (int c = 0; c < K; ++c) load(w + 4 * c, x[c]);
-#pragma GCC unroll 8
-  for (int c = 0; c < K; ++c) {
-#pragma GCC unroll 8
-    for (int r = c + 1; r < K; ++r) x[r] -= l[c * ld + r] * x[c];
-  }
-#pragma GCC unroll 8
-  for (int c = 0; c < K; ++c) store(x[c], w + 4 * c);
-  for (int i = K; i < n; ++i) {
-    Four<Real> sum;
-    load(w + 4 * i, sum);
-#pragma GCC unroll 8
-    for (int c = 0; c < K; ++c) sum -= l[c * ld + i] * x[c];
-    store(sum, w + 4 * i);
-  }
-}
-
+// The same of rows of four numbers.
 template <int K, class Real>
 void substitute_fours_back(const Real* l, Distance ld, int n, Real* w) {
   Four<Real> x[K];
@@ -288,8 +272,8 @@ struct OfWidth {
 };
 template <class Real, int... smaller>
 constexpr std::array<OfWidth<Real>, panel> of_widths(std::integer_sequence<int, smaller...>) {
-  return {{{take_panel<smaller + 1, Real>, substitute_forward<smaller + 1, Real>,
-            substitute_back<smaller + 1, Real>, substitute_fours_forward<smaller + 1, Real>,
+  return {{{take_panel<smaller + 1, Real>, substitute_forward<smaller + 1, Real, Real>,
+            substitute_back<smaller + 1, Real>, substitute_forward<smaller + 1, Four<Real>, Real>,
             substitute_fours_back<smaller + 1, Real>}...}};
 }
 template <class Real>

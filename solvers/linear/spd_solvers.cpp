@@ -1,11 +1,9 @@
-#include "solvers/linear/spd_solvers.h"
-
 #include <algorithm>
 #include <stdexcept>
 #include <string>
 
-#include "solvers/linear/mixed_cholesky.h"
 #include "solvers/linear/multifrontal_cholesky.h"
+#include "solvers/linear/spd_solver.h"
 
 namespace inextensible {
 

@@ -13,6 +13,7 @@
 #include "solvers/methods/colored_edges.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <map>
 #include <tuple>
@@ -50,28 +51,14 @@ struct ColoredEdges::Link {
   }
 };
 
-// The colors that are taken at each place.
-class ColoredEdges::Palette {
- public:
-  explicit Palette(std::size_t places) : taken_(places) {}
-
-  bool fits(const Link& link, int color) const {
-    return is_free(link.a, color) && is_free(link.b, color);
-  }
-  void paint(Link& link, int color) {
-    link.color = color;
-    for (const int place : {link.a, link.b}) {
-      taken_[place].resize(std::max(taken_[place].size(), std::size_t(color) + 1), false);
-      taken_[place][color] = true;
-    }
-  }
-
- private:
-  bool is_free(int place, int color) const {
-    return color >= std::ssize(taken_[place]) || !taken_[place][color];
-  }
-  std::vector<std::vector<bool>> taken_;
-};
+int Palette::take(std::span<const int> places) {
+  int color = 0;
+  while (std::any_of(places.begin(), places.end(),
+                     [&](int place) { return taken_[place].contains(color); }))
+    ++color;
+  for (const int place : places) taken_[place].insert(color);
+  return color;
+}
 
 ColoredEdges::ColoredEdges(const Problem& problem) {
   number_vertices(problem);
@@ -116,25 +103,17 @@ void ColoredEdges::color(std::vector<Link>& links) const {
                        }));
   }
   std::stable_sort(kinds.begin(), kinds.end(), [](Kind p, Kind q) { return p.size() > q.size(); });
-  const auto is_matching = [](Kind kind) {
+  Palette palette(vertex_.size());
+  for (const Kind kind : kinds) {
     std::vector<int> ends;
     for (const Link& link : kind) ends.insert(ends.end(), {link.a, link.b});
     std::sort(ends.begin(), ends.end());
-    return std::adjacent_find(ends.begin(), ends.end()) == ends.end();
-  };
-  Palette palette(vertex_.size());
-  const auto paint = [&](Kind together) {  // in the first color that all of them fit
-    int color = 0;
-    while (!std::all_of(together.begin(), together.end(),
-                        [&](const Link& link) { return palette.fits(link, color); }))
-      ++color;
-    for (Link& link : together) palette.paint(link, color);
-  };
-  for (const Kind kind : kinds) {
-    if (kind.size() >= least_run && is_matching(kind)) {
-      paint(kind);
+    const bool matching = std::adjacent_find(ends.begin(), ends.end()) == ends.end();
+    if (kind.size() >= least_run && matching) {
+      const int color = palette.take(ends);
+      for (Link& link : kind) link.color = color;
     } else {
-      for (std::size_t i = 0; i < kind.size(); ++i) paint(kind.subspan(i, 1));
+      for (Link& link : kind) link.color = palette.take(std::array{link.a, link.b});
     }
   }
 }

@@ -4,12 +4,24 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <set>
 #include <span>
 #include <vector>
 
 #include "solvers/problem/problem.h"
 
 namespace inextensible {
+
+// The colors that are taken at each place.
+class Palette {
+ public:
+  explicit Palette(std::size_t places) : taken_(places) {}
+  // The first color that is taken at none of these, and now at all.
+  int take(std::span<const int> places);
+
+ private:
+  std::vector<std::set<int>> taken_;
+};
 
 class ColoredEdges {
  public:
@@ -45,7 +57,6 @@ class ColoredEdges {
 
  private:
   struct Link;
-  class Palette;
   void number_vertices(const Problem& problem);
   std::vector<Link> links_by_kind(const Problem& problem) const;
   void color(std::vector<Link>& links) const;

@@ -109,9 +109,8 @@ class FastProjection final : public VelocityFilter {
   // the iteration Newton's with J(m) W J(m)^T for J(x_j) W J(m)^T. Returns whether x is
   // permissible.
   bool linearize(double target, const Positions& x) {
-    const bool permissible = system_.edges().linearize(x, u_, mu_);
+    const bool permissible = system_.edges().linearize(x, u_, mu_, target);
     if (along_ == Along::middle) to_middle(u_start_, u_);
-    if (target > 0) system_.edges().excess(target, mu_);
     return permissible;
   }
 

@@ -16,7 +16,6 @@
 #include <cmath>
 
 #include "solvers/methods/rows.h"
-#include "solvers/systems/active_contacts.h"
 #include "solvers/systems/constraint_system.h"
 #include "solvers/systems/kkt_system.h"
 
@@ -46,6 +45,81 @@ std::unique_ptr<KktSolver> make_kkt_solver(std::string_view name, const Problem&
   if (name == block_tridiagonal) return make_chain_kkt(problem, edges);
   return make_kkt_system(problem, edges);
 }
+
+// The active set of contacts around an equation solver (Nocedal and Wright 2006, section 16.5).
+// Vertices that planes hold stay on them while positions are solved for. Then a plane that would
+// have to pull releases its vertex, one that a vertex went through holds it, and the rest is solved
+// for again.
+class ActiveContacts {
+ public:
+  explicit ActiveContacts(const Problem& problem) {
+    if (!problem.contact_inside()) return;
+    free_.resize(3, problem.vertices());
+    reaction_.resize(problem.vertices());
+  }
+
+  // At the candidate x0 (3 x n), whose contacts are settled.
+  void begin(Iterate x0) {
+    contacts_ = x0.contact_count() > 0 ? x0.contacts() : nullptr;
+    if (contacts_) x0.without_pushes(free_);
+  }
+
+  // The candidate, with its held vertices on their planes, to x.
+  void write_candidate(Positions& x) const {
+    if (!contacts_) return;
+    x = free_;
+    hold(x);
+  }
+
+  // Held vertices of x, onto their planes.
+  void hold(Positions& x) const {
+    if (!contacts_) return;
+    const Contacts::Timing measured = contacts_->timing();
+    for (int c = 0; c < contacts_->count(); ++c) {
+      auto at = x.col(contacts_->vertex(c));
+      if (contacts_->holds(c)) at -= contacts_->gap(c, at) * contacts_->normal(c);
+    }
+  }
+
+  // Removes the reactions of planes, along the normals of held vertices, from the residual f (3 x
+  // n) of equations scaled by these masses, and stores them.
+  void take_reactions(const Eigen::VectorXd& mass, Positions& f) {
+    if (!contacts_) return;
+    for (int c = 0; c < contacts_->count(); ++c) {
+      const int vertex = contacts_->vertex(c);
+      const Eigen::Vector3d normal = contacts_->normal(c);
+      const double reaction = contacts_->holds(c) ? normal.dot(f.col(vertex)) : 0;
+      reaction_[c] = reaction / mass[vertex];
+      f.col(vertex) -= reaction * normal;
+    }
+  }
+
+  // At a solution x, after take_reactions(): releases planes that would pull, holds with those that
+  // were crossed, and updates pushes. Returns whether other vertices are held now.
+  bool update(const Positions& x) {
+    if (!contacts_) return false;
+    const Contacts::Timing measured = contacts_->timing();
+    bool changed = false;
+    for (int c = 0; c < contacts_->count(); ++c) {
+      const int vertex = contacts_->vertex(c);
+      if (contacts_->holds(c)) {
+        const double push = reaction_[c] - contacts_->gap(c, free_.col(vertex));
+        contacts_->set_push(c, std::max(push, 0.0));
+        changed |= push < 0;
+      } else if (const double gap = contacts_->gap(c, x.col(vertex));
+                 gap < -contacts_->tolerance()) {
+        contacts_->set_push(c, -gap);
+        changed = true;
+      }
+    }
+    return changed;
+  }
+
+ private:
+  Contacts* contacts_ = nullptr;
+  Positions free_;                // the candidate without any push
+  std::vector<double> reaction_;  // of each contact, along its normal, over the vertex's mass, m
+};
 
 class Icd final : public VelocityFilter {
  public:
@@ -99,9 +173,8 @@ class Icd final : public VelocityFilter {
  private:
   // u_, c_, f_, largest_f_ and merit_ at x0 + dx (in trial_) with multipliers trial_mu_.
   void evaluate(const Positions& dx) {
-    permissible_ = edges_.linearize(trial_, u_, c_);  // (4) and (2)
-    if (target_ > 0) edges_.excess(target_, c_);
-    f_ = dx * mass_.asDiagonal();  // M times the F of section 4.1
+    permissible_ = edges_.linearize(trial_, u_, c_, target_);  // (4) and (2)
+    f_ = dx * mass_.asDiagonal();                              // M times the F of section 4.1
     for (std::size_t k = 0; k < edges_.a.size(); ++k) {
       const auto e = static_cast<Eigen::Index>(k);
       f_.col(edges_.a[k]) -= trial_mu_[e] * u_.col(e);

@@ -8,12 +8,39 @@
 
 #include <array>
 #include <limits>
-#include <string>
+#include <string_view>
+#include <vector>
 
 #include "solvers/methods/backend.h"
-#include "solvers/systems/spring_hessian.h"
+#include "solvers/systems/vertex_matrix.h"
 
 namespace inextensible {
+
+// The matrix that springs and bending couple vertices in, blocks of 3 x 3, and where each spring
+// and each bending stencil adds to it.
+struct SpringHessian {
+  // stiffness: EA of the edges, N. linear_solver: a name of make_spd_solver, or "auto".
+  SpringHessian(const Problem& problem, double stiffness, std::string_view linear_solver);
+
+  struct Spring {
+    int a, b;                     // vertices
+    int fa, fb;                   // their places among free vertices, -1 if pinned
+    double rest, k;               // m, N/m
+    std::array<int, 3> coupling;  // where each of its block's columns begins among the values
+  };
+  struct Hinge {                                 // a bending stencil's places
+    std::array<int, 4> f;                        // among the free vertices, -1 if pinned
+    std::array<std::array<int, 3>, 6> coupling;  // of the pairs 10, 20, 21, 30, 31, 32
+  };
+  struct Places {  // of a diagonal block's numbers among the matrix's values
+    int xx, xy, yy, xz, yz, zz;
+  };
+
+  std::vector<Spring> springs;  // edges, then shear
+  std::vector<Hinge> hinges;    // one a bending stencil
+  VertexMatrix matrix;
+  std::vector<Places> diagonal;  // one a free vertex
+};
 
 class ImplicitSprings final : public Stepper {
  public:
@@ -36,8 +63,8 @@ class ImplicitSprings final : public Stepper {
   void predict_tension(const Positions& x, const Positions& to);
   enum class Search { full, shortened, at_minimum, failed };
   Search search(const Positions& x, double h, double longest, double& current);
-  StepResult end_velocities(const State& before, double h, const Positions& filtered,
-                            const Positions& x, Positions& v) override;
+  StepResult end_velocities(const State& before, double h, const Positions& x,
+                            Positions& v) override;
 
   using Spring = SpringHessian::Spring;
   using Hinge = SpringHessian::Hinge;

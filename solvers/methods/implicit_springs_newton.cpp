@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "solvers/methods/implicit_springs.h"
+#include "solvers/problem/forces.h"
 
 namespace inextensible {
 namespace {
@@ -87,10 +88,7 @@ ImplicitSprings::Search ImplicitSprings::search(const Positions& x, double h, do
 StepResult ImplicitSprings::solve(const State& state, double h, Positions& x) {
   Stopwatch stopwatch(phases_wanted_);
   if (problem().has_drag()) before_ = state.x;
-  const Eigen::Vector3d fall = h * h * problem().gravity();
-  inertial_ = state.x + h * state.v;
-  inertial_.colwise() += fall;
-  for (const int vertex : problem().pinned()) inertial_.col(vertex) = state.x.col(vertex);
+  free_flight(problem(), state, h, h * h, inertial_);
   pull_ = pull_before_;
   if (contacts_inside()) {
     contacts_->apply_friction(inertial_, work_);
@@ -201,12 +199,12 @@ StepResult ImplicitSprings::newton(double h, double current, Positions& x) {
 }
 
 // The history is of accepted steps, so that one tried again after a refusal starts as it did.
-StepResult ImplicitSprings::end_velocities(const State& before, double h, const Positions& filtered,
-                                           const Positions& x, Positions& v) {
+StepResult ImplicitSprings::end_velocities(const State& before, double h, const Positions& x,
+                                           Positions& v) {
   v_before_ = before.v;
   time_before_ = before.time;
   pull_before_.swap(pull_);
-  return Stepper::end_velocities(before, h, filtered, x, v);
+  return Stepper::end_velocities(before, h, x, v);
 }
 
 }  // namespace inextensible

@@ -52,7 +52,7 @@ class Shake final : public VelocityFilter {
     double full_step = 0;    // |mu_| before halving
     double reach = 0;        // largest |x^{n+1} - x^n| that is not taken for spurious
     for (int j = 0;; ++j) {
-      const bool permissible = linearize(x);
+      const bool permissible = edges.linearize(x, u_, c_, target_);
       const double error = c_.norm();
       const bool exact = error == 0 && (target_ > 0 || j > 0);  // nothing is left to project
       if (permissible && (j >= min_iterations_ || exact)) {
@@ -85,7 +85,7 @@ class Shake final : public VelocityFilter {
       } else {
         if (!(error < least_error)) {
           x.restore(best_);
-          linearize(x);
+          edges.linearize(x, u_, c_, target_);
         }
         if (!factor_here(x.contacts(), work))
           return refuse(Status::singular, j, edges, x, "J(x_j) W J(x^n)^T is singular");
@@ -154,13 +154,6 @@ class Shake final : public VelocityFilter {
     return true;
   }
 
-  // The gradient to u_; what of C lies beyond the target to c_. Returns whether x is permissible.
-  bool linearize(const Positions& x) {
-    const bool permissible = system_.edges().linearize(x, u_, c_);
-    if (target_ > 0) system_.edges().excess(target_, c_);
-    return permissible;
-  }
-
   void correct(Iterate x) {
     system_.edges().apply(u_start_, mu_, x);  // (5) with J(x^n)
     x.settle();
@@ -182,7 +175,7 @@ class Shake final : public VelocityFilter {
   Eigen::Matrix3Xd u_start_, u_;
   Positions x_factored_;  // where the factor in system_ was built; used by RATTLE only
   bool factored_ = false;
-  Eigen::VectorXd c_, mu_;  // C~(x_j), and the step's h^2 dlambda
+  Eigen::VectorXd c_, mu_;  // what of C(x_j) lies beyond the target; the step's h^2 dlambda
   Iterate::Record best_;    // of least |C|
   // J(x_j) W J(x^n)^T, made at the first failure to converge: most runs never need it.
   std::unique_ptr<SchurComplement> current_;
@@ -208,15 +201,12 @@ class Rattle final : public Stepper {
  private:
   StepResult solve(const State& state, double h, Positions& x) override {
     Stopwatch stopwatch(phases_wanted_);
-    x = state.x + h * state.v;  // position stage (Andersen 1983)
-    if (in_step(implicit_, h)) {
-      x.colwise() += 0.5 * h * h * problem_->gravity();
-      for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
-      kick_ = x;
-      if (!implicit_->advance_inside(state, h, 0.5, x, work_))
+    if (in_step(implicit_, h)) {  // position stage (Andersen 1983)
+      if (!implicit_->advance_inside(state, h, 0.5, kick_, x, work_))
         return {Status::singular, 0, -1, 0, singular_forces};
       kick_ = (x - kick_) * (1 / h);
     } else {
+      x = state.x + h * state.v;
       add_acceleration(*problem_, state.x, 0.5 * h * h, x, work_);
       if (problem_->has_drag()) add_drag(*problem_, state.v, 0.5 * h * h, x);
       for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
@@ -228,18 +218,15 @@ class Rattle final : public Stepper {
     return result;
   }
 
-  StepResult end_velocities(const State& start, double h, const Positions& /*filtered*/,
-                            const Positions& x, Positions& v) override {
+  StepResult end_velocities(const State& start, double h, const Positions& x,
+                            Positions& v) override {
     Stopwatch stopwatch(phases_wanted_);
     v = (x - start.x) * (1 / h);  // velocity stage
     if (in_step(implicit_, h)) {
       v += kick_;
       v.colwise() += 0.5 * h * problem_->gravity();
     } else {
-      if (problem_->has_drag()) {  // of the velocity halfway
-        v_half_ = v;
-        add_drag(*problem_, v_half_, 0.5 * h, v);
-      }
+      if (problem_->has_drag()) add_drag(*problem_, v, 0.5 * h, v);  // of the velocity halfway
       add_acceleration(*problem_, x, 0.5 * h, v, work_);
     }
     for (const int vertex : problem_->pinned())  // 0 unless pins follow a body
@@ -261,7 +248,6 @@ class Rattle final : public Stepper {
   }
 
   Shake shake_;
-  Positions v_half_;                          // with drag only
   std::unique_ptr<ImplicitForces> implicit_;  // null: explicit
   Positions candidate_;                       // before friction, with contact only
   Positions kick_;                            // m/s, of implicit forces in half a step

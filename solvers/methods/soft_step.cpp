@@ -65,8 +65,8 @@ class SoftStep final : public Stepper {
     return {Status::ok, passes_};
   }
 
-  StepResult end_velocities(const State& start, double h, const Positions& /*filtered*/,
-                            const Positions& x, Positions& v) override {
+  StepResult end_velocities(const State& start, double h, const Positions& x,
+                            Positions& v) override {
     v = (x - start.x) * (1 / h);
     directions(x);
     for (int pass = 0; pass < passes_; ++pass) {

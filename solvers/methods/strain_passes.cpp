@@ -145,17 +145,6 @@ StepResult StrainPasses::verdict(int passes, const char* limit, const EdgeConstr
   return refuse(Status::not_converged, passes, edges, x, limit ? limit : "an edge has no length");
 }
 
-void StrainPasses::begin(Iterate x) {
-  load(x);
-  if (contacts_) contacts_->save(begun_);
-}
-
-StepResult StrainPasses::passes_alone(const EdgeConstraints& edges, Iterate x, WorkCounters& work) {
-  constexpr int most_passes = 100'000;
-  if (contacts_) contacts_->restore(begun_);
-  return limit(Order::in_turn, most_passes, edges, x, work);
-}
-
 // By way of x, where vertices lie as contacts know them.
 void StrainPasses::renew_planes(Iterate x, WorkCounters& work) {
   store(x);

@@ -72,8 +72,6 @@ class StrainPasses {
   // nothing to correct.
   void load(Iterate x);
   void store(Positions& x) const;
-  // load(), and saves the contacts of x for passes_alone().
-  void begin(Iterate x);
   // From now on corrections point along the edges as they are in the middle of the step from
   // x_start (3 x n) to where they are. Until the first call they point along the edges as they are.
   void take_middle_from(const Positions& x_start);
@@ -111,20 +109,12 @@ class StrainPasses {
   static StepResult verdict(int passes, const char* limit, const EdgeConstraints& edges,
                             const Positions& x);
 
-  // Rounds of projections in contact, after which passes alone end a step: Newton's method
-  // overshoots where a step takes vertices far round an obstacle; passes do not.
-  static constexpr int most_rounds_in_contact = 100;
-  // Ends a step that projections do not end: restores the contacts that begin() saved, and makes
-  // passes in turn, from x as it was stored last.
-  StepResult passes_alone(const EdgeConstraints& edges, Iterate x, WorkCounters& work);
-
  private:
   void renew_planes(Iterate x, WorkCounters& work);
   template <bool in_place, bool middle>
   std::int64_t pass(ColoredEdges::Places& to);
 
   Contacts* contacts_ = nullptr;
-  Contacts::Record begun_;
   ColoredEdges edges_;
   PlacedContacts planes_;  // of contacts_
   StrainBand band_;

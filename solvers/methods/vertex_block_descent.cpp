@@ -12,6 +12,7 @@
 
 #include "solvers/methods/rows.h"
 #include "solvers/methods/vertex_passes.h"
+#include "solvers/problem/forces.h"
 
 namespace inextensible {
 namespace {
@@ -43,10 +44,7 @@ class VertexBlockDescent final : public Stepper {
  private:
   StepResult solve(const State& state, double h, Positions& x) override {
     Stopwatch stopwatch(phases_wanted_);
-    const Eigen::Vector3d fall = h * h * problem().gravity();
-    inertial_ = state.x + h * state.v;
-    inertial_.colwise() += fall;
-    for (const int vertex : problem().pinned()) inertial_.col(vertex) = state.x.col(vertex);
+    free_flight(problem(), state, h, h * h, inertial_);
     for (int v = 0; problem().has_drag() && v < problem().vertices(); ++v) {
       const double mass = problem().mass()[v], drag = h * problem().drag(v);
       inertia_[v] = mass + drag;
@@ -98,11 +96,11 @@ class VertexBlockDescent final : public Stepper {
   }
 
   // The history is of accepted steps, so that one tried again after a refusal starts as it did.
-  StepResult end_velocities(const State& before, double h, const Positions& filtered,
-                            const Positions& x, Positions& v) override {
+  StepResult end_velocities(const State& before, double h, const Positions& x,
+                            Positions& v) override {
     v_before_ = before.v;
     time_before_ = before.time;
-    return Stepper::end_velocities(before, h, filtered, x, v);
+    return Stepper::end_velocities(before, h, x, v);
   }
 
   int iterations_;

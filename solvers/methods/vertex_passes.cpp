@@ -65,7 +65,6 @@ VertexPasses::VertexPasses(const Problem& problem, const Springs& springs, const
   inertia_.setOnes(places);
   push_.setZero(places);
   plane_.setZero(places, 4);
-  std::vector<double> stiffness, rest;
   for (Group& group : groups_) {
     group.entry = static_cast<int>(other_.size());
     group.pair = static_cast<int>(bent_with_.size());
@@ -81,8 +80,8 @@ VertexPasses::VertexPasses(const Problem& problem, const Springs& springs, const
         const bool filler = v < 0 || s >= std::ssize(ends.springs[v]);
         const Ends::Spring spring = filler ? Ends::Spring{} : ends.springs[v][s];
         other_.push_back(filler ? i : place_[spring.other]);
-        stiffness.push_back(spring.stiffness);
-        rest.push_back(spring.rest_length);
+        stiffness_.push_back(spring.stiffness);
+        rest_.push_back(spring.rest_length);
         entries_ += filler ? 0 : 1;
       }
     }
@@ -97,10 +96,7 @@ VertexPasses::VertexPasses(const Problem& problem, const Springs& springs, const
       }
     }
   }
-  const auto all = static_cast<Eigen::Index>(other_.size());
-  stiffness_ = Eigen::Map<const Eigen::ArrayXd>(stiffness.data(), all);
-  rest_ = Eigen::Map<const Eigen::ArrayXd>(rest.data(), all);
-  tension_.setZero(all);
+  tension_.setZero(static_cast<Eigen::Index>(other_.size()));
 }
 
 // By color, and within one by the number of springs, so that groups are of a kind.
@@ -225,11 +221,6 @@ void VertexPasses::add_bending(const Group& group, double stiffness_scale, Model
   }
 }
 
-void VertexPasses::add_forces(const Group& group, double stiffness_scale, Model& model) const {
-  add_springs(group, stiffness_scale, model);
-  add_bending(group, stiffness_scale, model);
-}
-
 template <bool with_planes>
 double VertexPasses::visit(const Group& group, double stiffness_scale, double relaxation) {
   Model model;
@@ -245,7 +236,8 @@ double VertexPasses::visit(const Group& group, double stiffness_scale, double re
     h[0][i] = h[3][i] = h[5][i] = inertia[i];
     h[1][i] = h[2][i] = h[4][i] = 0;
   }
-  add_forces(group, stiffness_scale, model);
+  add_springs(group, stiffness_scale, model);
+  add_bending(group, stiffness_scale, model);
   const double* plane[4];
   for (int n = 0; n < 4; ++n) plane[n] = plane_.col(n).data() + group.place;
   double* push = push_.data() + group.place;

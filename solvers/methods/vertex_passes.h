@@ -53,7 +53,6 @@ class VertexPasses {
   struct Ends;
   void place_vertices(const Ends& ends);
   struct Model;
-  void add_forces(const Group& group, double stiffness_scale, Model& model) const;
   void add_springs(const Group& group, double stiffness_scale, Model& model) const;
   void add_bending(const Group& group, double stiffness_scale, Model& model) const;
   template <bool with_planes>
@@ -64,7 +63,8 @@ class VertexPasses {
   std::vector<int> place_;     // of a vertex; pinned ones come last
   int free_places_ = 0, entries_ = 0;
   std::vector<int> other_;  // by entry: the place of the other end
-  Eigen::ArrayXd stiffness_, rest_, tension_;
+  std::vector<double> stiffness_, rest_;
+  Eigen::ArrayXd tension_;
   // -H_ij of V, by pair, and the place of j. Rows of H have the sum 0: each pair is a spring of no
   // length, whose stiffness may be negative.
   std::vector<int> bent_with_;

@@ -27,36 +27,29 @@ YarnPass::YarnPass(const Problem& problem, double strain_limit, double target,
       target_high_(target * (PermissibleSquares(strain_limit).high - 1)),
       places_(places) {
   const std::vector<Yarn> yarns = yarns_of(problem);
-  std::vector<const Yarn*> side_by_side;
-  for (const Yarn& yarn : yarns) {
-    if (!side_by_side.empty() &&
-        (side_by_side.size() == lanes || side_by_side.front()->color != yarn.color)) {
-      add_bundle(problem, side_by_side, places);
-      side_by_side.clear();
-    }
-    side_by_side.push_back(&yarn);
+  for (auto first = yarns.begin(), end = first; first != yarns.end(); first = end) {
+    while (end != yarns.end() && end - first < lanes && end->color == first->color) ++end;
+    add_bundle(problem, {first, end});
   }
-  if (!side_by_side.empty()) add_bundle(problem, side_by_side, places);
   crossing_ = !yarns.empty() && yarns.front().color != yarns.back().color;
   int longest = 0;
   for (const Bundle& b : bundles_) longest = std::max(longest, b.links);
   rows_.resize(static_cast<std::size_t>(longest) + 1, Row{});
 }
 
-void YarnPass::add_bundle(const Problem& problem, const std::vector<const Yarn*>& yarns,
-                          const ColoredEdges& places) {
-  const std::size_t links = yarns.front()->edges.size();  // the longest comes first
+void YarnPass::add_bundle(const Problem& problem, std::span<const Yarn> yarns) {
+  const std::size_t links = yarns.front().edges.size();  // the longest comes first
   bundles_.push_back({static_cast<int>(links), static_cast<int>(place_.size()) / lanes,
                       static_cast<int>(yarns.size())});
   for (std::size_t i = 0; i <= links; ++i) {
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       // A lane without a yarn stays at the first one's begin, a short yarn at its end.
       const bool taken = lane < yarns.size();
-      const Yarn& yarn = *yarns[taken ? lane : 0];
+      const Yarn& yarn = yarns[taken ? lane : 0];
       const std::size_t count = taken ? yarn.edges.size() : 0;
       const int vertex = yarn.vertices[std::min(i, count)];
       const bool link = i < count;
-      place_.push_back(places.place(vertex));
+      place_.push_back(places_.place(vertex));
       inverse_mass_.push_back(taken && i <= count ? problem.inverse_mass()[vertex] : 0);
       rest_.push_back(link ? problem.rest_length()[yarn.edges[i]] : 0);
       inverse_rest_.push_back(link ? 1 / rest_.back() : 0);

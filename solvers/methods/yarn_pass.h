@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "solvers/methods/strain_passes.h"
@@ -48,8 +49,7 @@ class YarnPass {
   struct Bundle {
     int links, first, yarns;  // first: row of vertices and links in the arrays below
   };
-  void add_bundle(const Problem& problem, const std::vector<const Yarn*>& yarns,
-                  const ColoredEdges& places);
+  void add_bundle(const Problem& problem, std::span<const Yarn> yarns);
   template <bool contact, bool middle>
   std::int64_t project_all(ColoredEdges::Places& x, const ColoredEdges::Places* normals,
                            WorkCounters& work);

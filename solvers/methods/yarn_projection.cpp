@@ -33,6 +33,10 @@ namespace {
 constexpr double link_cost = 3, row_cost = 12, nonzero_cost = 0.3, operation_cost = 0.06,
                  contact_cost = 5;
 
+// Rounds in contact, after which passes alone end a step: Newton's method overshoots where a step
+// takes vertices far round an obstacle; passes do not.
+constexpr int most_rounds_in_contact = 100, most_passes_alone = 100'000;
+
 enum Way { rounds_alone, with_the_whole };  // how a step is done
 
 // Which way is cheaper, as far as steps have shown.
@@ -129,16 +133,14 @@ class WholeCloth {
  private:
   // The gradient to u_, C~ to mu_, both at x_. Returns |C~|^2.
   double linearize() {
-    system_.edges().linearize(x_, u_, mu_);
+    system_.edges().linearize(x_, u_, mu_, target_);
     if (u_start_.cols() > 0) to_middle(u_start_, u_);
-    system_.edges().excess(target_, mu_);
     return mu_.squaredNorm();
   }
 
   double cost_since(const WorkCounters& before, const WorkCounters& now) const {
     const auto factorizations = static_cast<double>(now.factorizations - before.factorizations);
-    const auto solves = static_cast<double>(now.back_solves - before.back_solves +
-                                            now.linear_iterations - before.linear_iterations);
+    const auto solves = static_cast<double>(now.back_solves - before.back_solves);
     return system_.edges().count() * (row_cost + 4 * solves) +
            solves * nonzero_cost * now.factor_nonzeros +
            factorizations * operation_cost * now.factor_flops;
@@ -169,7 +171,8 @@ class YarnProjection final : public VelocityFilter {
 
   StepResult apply(const Positions& x_start, double /*h*/, Iterate x, WorkCounters& work) override {
     if (edges_.permissible(x)) return {Status::ok, 0};
-    passes_.begin(x);
+    passes_.load(x);
+    if (x.contacts()) x.contacts()->save(begun_);
     if (along_ == Along::middle)
       yarns_.take_middle_from(x_start);  // passes: along edges as they are
     if (whole_) {
@@ -183,9 +186,10 @@ class YarnProjection final : public VelocityFilter {
     Way way = whole ? experience_.choose() : rounds_alone;
     double cost = 0;
     for (int rounds = 0;; ++rounds) {
-      if (x.contact_count() > 0 && rounds == StrainPasses::most_rounds_in_contact) {
+      if (x.contact_count() > 0 && rounds == most_rounds_in_contact) {  // from the last x stored
         experience_ = {};
-        return passes_.passes_alone(edges_, x, work);
+        x.contacts()->restore(begun_);
+        return passes_.limit(StrainPasses::Order::in_turn, most_passes_alone, edges_, x, work);
       }
       const bool stops = passes_.gives_up(rounds, max_iterations_);
       passes_.settle_contacts();
@@ -235,6 +239,7 @@ class YarnProjection final : public VelocityFilter {
   int sweeps_;  // where yarns cross; elsewhere a yarn's projection is that of the whole
   std::unique_ptr<WholeCloth> whole_;  // of fast_projection_adaptive
   Experience experience_;
+  Contacts::Record begun_;  // contacts at the candidate
 };
 
 std::unique_ptr<VelocityFilter> make_adaptive(const Problem& problem, const BackendOptions& options,

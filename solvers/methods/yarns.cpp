@@ -4,7 +4,6 @@
 #include <array>
 #include <map>
 #include <numeric>
-#include <set>
 
 #include "solvers/methods/yarn_pass.h"
 
@@ -49,20 +48,6 @@ std::vector<std::array<int, 2>> continuations(const Problem& problem, const Neig
   return next;
 }
 
-// The first color that none of a yarn's vertices has yet.
-void paint(std::vector<Yarn>& yarns, int vertices) {
-  std::vector<std::set<int>> taken(vertices);
-  for (Yarn& yarn : yarns) {
-    const auto fits = [&](int color) {
-      return std::none_of(yarn.vertices.begin(), yarn.vertices.end(),
-                          [&](int v) { return taken[v].contains(color); });
-    };
-    yarn.color = 0;
-    while (!fits(yarn.color)) ++yarn.color;
-    for (const int v : yarn.vertices) taken[v].insert(yarn.color);
-  }
-}
-
 }  // namespace
 
 std::vector<Yarn> yarns_of(const Problem& problem) {
@@ -95,9 +80,12 @@ std::vector<Yarn> yarns_of(const Problem& problem) {
   for (int k = 0; k < problem.constraints(); ++k) {  // rings, and what was cut off
     if (!used[k]) follow(k, problem.edges()[k].a);
   }
-  paint(yarns, problem.vertices());
+  Palette palette(problem.vertices());
   std::map<int, std::size_t> edges_of;
-  for (const Yarn& yarn : yarns) edges_of[yarn.color] += yarn.edges.size();
+  for (Yarn& yarn : yarns) {
+    yarn.color = palette.take(yarn.vertices);
+    edges_of[yarn.color] += yarn.edges.size();
+  }
   std::stable_sort(yarns.begin(), yarns.end(), [&](const Yarn& p, const Yarn& q) {
     if (p.color != q.color)
       return std::pair(edges_of[q.color], p.color) < std::pair(edges_of[p.color], q.color);

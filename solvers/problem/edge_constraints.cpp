@@ -32,7 +32,8 @@ EdgeConstraints::EdgeConstraints(const Problem& problem, double strain_limit,
   }
 }
 
-bool EdgeConstraints::linearize(const Positions& x, Eigen::Matrix3Xd& u, Eigen::VectorXd& c) const {
+bool EdgeConstraints::linearize(const Positions& x, Eigen::Matrix3Xd& u, Eigen::VectorXd& c,
+                                double target) const {
   double* uk = u.data();
   double* ck = c.data();
   const std::size_t m = count();
@@ -45,20 +46,17 @@ bool EdgeConstraints::linearize(const Positions& x, Eigen::Matrix3Xd& u, Eigen::
     ck[k] = rest_length[k] * (s.squared - 1);
     violations += outside(s);
   }
+  if (target > 0) {
+    const double low = target * (permissible_low - 1), high = target * (permissible_high - 1);
+    for (std::size_t k = 0; k < m; ++k)
+      ck[k] -= std::clamp(ck[k], low * rest_length[k], high * rest_length[k]);
+  }
   return violations == 0;
 }
 
 void EdgeConstraints::gradient(const Positions& x, Eigen::Matrix3Xd& u) const {
   for (std::size_t k = 0; k < a.size(); ++k) {
     u.col(static_cast<Eigen::Index>(k)) = 2 * inverse_rest_length[k] * (x.col(b[k]) - x.col(a[k]));
-  }
-}
-
-void EdgeConstraints::excess(double fraction, Eigen::VectorXd& c) const {
-  const double low = fraction * (permissible_low - 1), high = fraction * (permissible_high - 1);
-  for (std::size_t k = 0; k < rest_length.size(); ++k) {
-    double& ck = c[static_cast<Eigen::Index>(k)];
-    ck -= std::clamp(ck, low * rest_length[k], high * rest_length[k]);
   }
 }
 

@@ -35,16 +35,14 @@ class EdgeConstraints {
   int count() const { return static_cast<int>(a.size()); }
   int problem_edge(int k) const { return order_.empty() ? k : order_[k]; }
 
-  // u (3 x m) and C (m) at x (3 x n). Returns whether the strain of every edge is permissible;
-  // false on NaN.
-  bool linearize(const Positions& x, Eigen::Matrix3Xd& u, Eigen::VectorXd& c) const;
+  // u (3 x m) and C (m) at x (3 x n), or how far C lies outside the fraction `target` of the
+  // permissible band, 0 inside. Returns whether the strain of every edge is permissible; false on
+  // NaN.
+  bool linearize(const Positions& x, Eigen::Matrix3Xd& u, Eigen::VectorXd& c,
+                 double target = 0) const;
 
   // u alone: the start-of-step direction.
   void gradient(const Positions& x, Eigen::Matrix3Xd& u) const;
-
-  // c_k (m entries, C on entry) becomes how far it lies outside `fraction` of the permissible band,
-  // 0 inside.
-  void excess(double fraction, Eigen::VectorXd& c) const;
 
   // dC/dt = J v (m entries), J given by u, v 3 x n.
   void rate(const Eigen::Matrix3Xd& u, const Positions& v, Eigen::VectorXd& c) const;

@@ -66,24 +66,14 @@ void add_springs(const Edge& e, const double* k, const double* r, const double* 
   for (std::size_t i = 0; i < 3 * n; ++i) qb[i] -= fb[i] * d[i];
 }
 
-void add_bending_acceleration(const Bending& bending, const std::vector<double>& w,
-                              const Positions& x, double scale, Positions& y) {
-  for (std::size_t s = 0; s < bending.size();) {
-    const bool many = s + side_by_side <= bending.size() && consecutive(&bending[s]);
-    (many ? add_bending<side_by_side> : add_bending<1>)(bending[s], w.data(), x.data(), scale,
-                                                        y.data());
-    s += many ? side_by_side : 1;
-  }
-}
-
-void add_spring_acceleration(const Springs& springs, const std::vector<double>& w,
-                             const Positions& x, double scale, Positions& y) {
-  for (std::size_t s = 0; s < springs.edges.size();) {
-    const bool many = s + side_by_side <= springs.edges.size() && consecutive(&springs.edges[s]);
-    (many ? add_springs<side_by_side> : add_springs<1>)(springs.edges[s], &springs.stiffness[s],
-                                                        &springs.rest_length[s], w.data(), x.data(),
-                                                        scale, y.data());
-    s += many ? side_by_side : 1;
+// Calls add.operator()<n>(i) for stencils i ... i + n - 1, n being 1 or, where they are
+// consecutive, side_by_side.
+template <class Stencils, class Add>
+void for_each_group(const Stencils& all, Add add) {
+  for (std::size_t i = 0; i < all.size();) {
+    const bool many = i + side_by_side <= all.size() && consecutive(&all[i]);
+    many ? add.template operator()<side_by_side>(i) : add.template operator()<1>(i);
+    i += many ? side_by_side : 1;
   }
 }
 
@@ -91,17 +81,29 @@ void add_accelerations(const Problem& problem, const Positions& x, const Positio
                        double scale, Positions& y, WorkCounters& work) {
   const Eigen::Vector3d fall = scale * problem.gravity();
   y.colwise() += fall;
+  const double* w = problem.inverse_mass().data();
   if (const Springs* shear = problem.shear()) {
-    add_spring_acceleration(*shear, problem.inverse_mass(), shear_at, scale, y);
+    for_each_group(shear->edges, [&]<std::size_t n>(std::size_t i) {
+      add_springs<n>(shear->edges[i], &shear->stiffness[i], &shear->rest_length[i], w,
+                     shear_at.data(), scale, y.data());
+    });
     work.spring_evaluations += static_cast<std::int64_t>(shear->edges.size());
   }
-  if (!problem.bending().empty()) {
-    add_bending_acceleration(problem.bending(), problem.inverse_mass(), x, scale, y);
-    work.spring_evaluations += static_cast<std::int64_t>(problem.bending().size());
-  }
+  const Bending& bending = problem.bending();
+  for_each_group(bending, [&]<std::size_t n>(std::size_t i) {
+    add_bending<n>(bending[i], w, x.data(), scale, y.data());
+  });
+  work.spring_evaluations += static_cast<std::int64_t>(bending.size());
 }
 
 }  // namespace
+
+void free_flight(const Problem& problem, const State& state, double h, double scale, Positions& y) {
+  const Eigen::Vector3d fall = scale * problem.gravity();
+  y = state.x + h * state.v;
+  y.colwise() += fall;
+  for (const int vertex : problem.pinned()) y.col(vertex) = state.x.col(vertex);
+}
 
 void add_acceleration(const Problem& problem, const Positions& x, double scale, Positions& y,
                       WorkCounters& work) {
@@ -129,24 +131,20 @@ void unconstrained_step(const Problem& problem, const State& state, double h, Po
   for (const int vertex : problem.pinned()) x0.col(vertex) = state.x.col(vertex);
 }
 
-double spring_energy(const Springs& springs, const Positions& x) {
-  double energy = 0;
-  for (std::size_t k = 0; k < springs.edges.size(); ++k) {
-    const auto [a, b] = springs.edges[k];
-    const double elongation = (x.col(b) - x.col(a)).norm() - springs.rest_length[k];
-    energy += 0.5 * springs.stiffness[k] * elongation * elongation;
-  }
-  return energy;
-}
-
 double potential_energy(const Problem& problem, const Positions& x) {
   // Term by term: Eigen's own sums go by the address of what they add up, so that equal runs would
   // differ by a rounding.
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
   for (Eigen::Index i = 0; i < x.cols(); ++i) moment += problem.mass()[i] * x.col(i);
-  double energy = -problem.gravity().dot(moment);
-  if (const Springs* shear = problem.shear()) energy += spring_energy(*shear, x);
-  return energy + bending_energy(problem.bending(), x);
+  const double energy = -problem.gravity().dot(moment);
+  double of_shear = 0;
+  const Springs* shear = problem.shear();
+  for (std::size_t k = 0; shear && k < shear->edges.size(); ++k) {
+    const auto [a, b] = shear->edges[k];
+    const double elongation = (x.col(b) - x.col(a)).norm() - shear->rest_length[k];
+    of_shear += 0.5 * shear->stiffness[k] * elongation * elongation;
+  }
+  return energy + of_shear + bending_energy(problem.bending(), x);
 }
 
 double kinetic_energy(const Problem& problem, const Positions& v) {

@@ -15,7 +15,6 @@
 
 #include "solvers/problem/bending.h"
 #include "solvers/problem/collider.h"
-#include "solvers/problem/pose.h"
 
 namespace inextensible {
 

@@ -84,14 +84,13 @@ TriangleCollider::TriangleCollider(TriangleMesh mesh, double friction)
 
 // A face's own normal; the sum of both faces' at an edge; the angle-weighted sum at a corner.
 void TriangleCollider::find_pseudonormals() {
-  const auto count = mesh_.triangles.size();
   std::vector<Vector3d> at_vertex(mesh_.vertices.size(), Vector3d::Zero());
   std::map<std::pair<int, int>, std::pair<Vector3d, int>> at_edge;
-  pseudonormal_.resize(count);
-  for (std::size_t f = 0; f < count; ++f) {
+  pseudonormal_.resize(mesh_.triangles.size());
+  for (int f = 0; f < triangles(); ++f) {
     const auto& triangle = mesh_.triangles[f];
     std::array<Vector3d, 3> p;
-    for (int i = 0; i < 3; ++i) p[i] = corner(mesh_, static_cast<int>(f), i);
+    for (int i = 0; i < 3; ++i) p[i] = corner(mesh_, f, i);
     const Vector3d normal = (p[1] - p[0]).cross(p[2] - p[0]).normalized();
     pseudonormal_[f][0] = normal;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -112,7 +111,7 @@ void TriangleCollider::find_pseudonormals() {
           ") has " + std::to_string(normal.second) + " triangles, a closed mesh has 2");
     }
   }
-  for (std::size_t f = 0; f < count; ++f) {
+  for (int f = 0; f < triangles(); ++f) {
     const auto& triangle = mesh_.triangles[f];
     for (std::size_t i = 0; i < 3; ++i) {
       pseudonormal_[f][1 + i] =
@@ -125,10 +124,9 @@ void TriangleCollider::find_pseudonormals() {
 void TriangleCollider::check_orientation() {
   double volume = 0;
   convex_ = true;
-  for (std::size_t f = 0; f < mesh_.triangles.size(); ++f) {
-    const Vector3d& p = corner(mesh_, static_cast<int>(f), 0);
-    volume += p.dot((corner(mesh_, static_cast<int>(f), 1) - p)
-                        .cross(corner(mesh_, static_cast<int>(f), 2) - p));
+  for (int f = 0; f < triangles(); ++f) {
+    const Vector3d& p = corner(mesh_, f, 0);
+    volume += p.dot((corner(mesh_, f, 1) - p).cross(corner(mesh_, f, 2) - p));
     for (const Vector3d& v : mesh_.vertices) {
       convex_ = convex_ && (v - p).dot(pseudonormal_[f][0]) <= 1e-9 * p.norm();
     }
@@ -141,7 +139,6 @@ void TriangleCollider::check_orientation() {
 }
 
 void TriangleCollider::lay_out_grid() {
-  const auto count = mesh_.triangles.size();
   Vector3d high = low_ = mesh_.vertices.front();
   for (const Vector3d& v : mesh_.vertices) {
     low_ = low_.cwiseMin(v);
@@ -152,15 +149,14 @@ void TriangleCollider::lay_out_grid() {
   low_ -= margin;
   cell_size_ = (high + margin - low_) / resolution;
   inverse_cell_size_ = cell_size_.cwiseInverse();
-  for (std::size_t f = 0; f < count; ++f) {
+  for (int f = 0; f < triangles(); ++f) {
     const Vector3d& normal = pseudonormal_[f][0];
-    planes_.push_back(
-        {normal.x(), normal.y(), normal.z(), normal.dot(corner(mesh_, static_cast<int>(f), 0))});
+    planes_.push_back({normal.x(), normal.y(), normal.z(), normal.dot(corner(mesh_, f, 0))});
   }
-  std::vector<int> all(count);
+  std::vector<int> all(triangles());
   std::iota(all.begin(), all.end(), 0);
   cell_.assign(resolution * resolution * resolution, outside);
-  lists_.push_back(add_list(all));  // deep
+  lists_.push_back(all);  // deep
   refine(Eigen::Vector3i::Zero(), resolution, all);
 }
 
@@ -199,7 +195,7 @@ void TriangleCollider::refine(const Eigen::Vector3i& cell, int size,
   }
   if (size == 1) {
     cell_[cell_index(cell)] = static_cast<int>(lists_.size());
-    lists_.push_back(add_list(kept));
+    lists_.push_back(kept);
     return;
   }
   for (int octant = 0; octant < 8; ++octant) {
@@ -251,16 +247,6 @@ TriangleCollider::Nearest TriangleCollider::nearest_among(std::span<const int> t
   return {best.point, normal, (p - best.point).dot(normal) < 0 ? -distance : distance};
 }
 
-TriangleCollider::List TriangleCollider::add_list(const std::vector<int>& triangles) {
-  const List list{static_cast<int>(listed_.size()), static_cast<int>(triangles.size())};
-  listed_.insert(listed_.end(), triangles.begin(), triangles.end());
-  return list;
-}
-
-std::span<const int> TriangleCollider::triangles_of(const List& list) const {
-  return {listed_.begin() + list.first, static_cast<std::size_t>(list.count)};
-}
-
 int TriangleCollider::cell_at(const Vector3d& p) const {
   const Vector3d scaled = (p - low_).cwiseProduct(inverse_cell_size_);
   const bool in_box = (scaled.array() >= 0).all() && (scaled.array() < resolution).all();
@@ -269,29 +255,29 @@ int TriangleCollider::cell_at(const Vector3d& p) const {
 
 TriangleCollider::Nearest TriangleCollider::nearest(const Vector3d& p) const {
   const int cell = cell_at(p);
-  return cell == outside ? nearest_by_all(p) : nearest_among(triangles_of(lists_[cell]), p);
+  return cell == outside ? nearest_by_all(p) : nearest_among(lists_[cell], p);
 }
 
-int TriangleCollider::least_behind(const List& list, const Vector3d& p, double& distance) const {
+int TriangleCollider::least_behind(std::span<const int> list, const Vector3d& p,
+                                   double& distance) const {
   const double px = p.x(), py = p.y(), pz = p.z();
-  const int* listed = listed_.data() + list.first;
   distance = -std::numeric_limits<double>::infinity();
-  int nearest = listed[0];
-  for (int i = 0; i < list.count; ++i) {
-    const Plane& t = planes_[listed[i]];
+  int nearest = list[0];
+  for (const int triangle : list) {
+    const Plane& t = planes_[triangle];
     const double here = t.x * px + t.y * py + t.z * pz - t.offset;
     if (here > distance) {
       distance = here;
-      nearest = listed[i];
+      nearest = triangle;
     }
   }
   return nearest;
 }
 
-bool TriangleCollider::touches(const List& list, const Vector3d& p, double depth,
+bool TriangleCollider::touches(std::span<const int> list, const Vector3d& p, double depth,
                                ContactPlane& plane, Memory::RowXpr witness) const {
   if (!convex_) {
-    const Nearest nearest = nearest_among(triangles_of(list), p);
+    const Nearest nearest = nearest_among(list, p);
     if (!(nearest.signed_distance < -depth)) return false;
     plane.normal = (nearest.point - p) / -nearest.signed_distance;
     plane.offset = plane.normal.dot(nearest.point);
@@ -317,7 +303,7 @@ void TriangleCollider::show_outside(const Vector3d& p, Memory::RowXpr witness,
   } else if (convex_) {
     double distance = 0;
     const Plane& t = planes_[least_behind(lists_[deep], p, distance)];
-    work.triangle_tests += lists_[deep].count;
+    work.triangle_tests += triangles();
     witness << t.x, t.y, t.z, t.offset;
   }
 }
@@ -337,8 +323,8 @@ void TriangleCollider::find(const Eigen::Matrix3Xd& x, const std::vector<double>
         show_outside(x.col(v), memory.row(v), work);
         continue;
       }
-      const List& list = lists_[cell];
-      work.triangle_tests += list.count;
+      const std::vector<int>& list = lists_[cell];
+      work.triangle_tests += std::ssize(list);
       if (!touches(list, x.col(v), depth, plane, memory.row(v))) continue;
       plane.vertex = static_cast<int>(v);
       planes.push_back(plane);
@@ -349,21 +335,20 @@ void TriangleCollider::find(const Eigen::Matrix3Xd& x, const std::vector<double>
 bool TriangleCollider::plane_at(const Vector3d& p, ContactPlane& plane, WorkCounters& work) const {
   const int cell = cell_at(p);
   if (cell == outside) return false;
-  const List& list = lists_[cell];
-  work.triangle_tests += list.count;
+  const std::vector<int>& list = lists_[cell];
+  work.triangle_tests += std::ssize(list);
   if (convex_) {
     const auto behind = [&](int triangle) {
       const Plane& t = planes_[triangle];
       return t.offset - t.x * p.x() - t.y * p.y() - t.z * p.z();
     };
-    const auto triangles = triangles_of(list);
     const Plane& least = planes_[*std::min_element(
-        triangles.begin(), triangles.end(), [&](int s, int t) { return behind(s) < behind(t); })];
+        list.begin(), list.end(), [&](int s, int t) { return behind(s) < behind(t); })];
     plane.normal = {least.x, least.y, least.z};
     plane.offset = least.offset;
     return true;
   }
-  const Nearest nearest = nearest_among(triangles_of(list), p);
+  const Nearest nearest = nearest_among(list, p);
   const double distance = nearest.signed_distance;
   // At the surface itself the way there has no direction.
   plane.normal = std::abs(distance) > 1e-9 * cell_size_.norm()

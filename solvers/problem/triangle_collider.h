@@ -36,7 +36,6 @@ class TriangleCollider final : public Collider {
   bool plane_at(const Eigen::Vector3d& p, ContactPlane& plane, WorkCounters& work) const override;
   double friction() const override { return friction_; }
   int triangles() const override { return static_cast<int>(mesh_.triangles.size()); }
-  const TriangleMesh& mesh() const { return mesh_; }
 
   struct Nearest {
     Eigen::Vector3d point;   // on the mesh, m
@@ -46,9 +45,7 @@ class TriangleCollider final : public Collider {
   // Exact; inside the mesh's box by way of the grid.
   Nearest nearest(const Eigen::Vector3d& p) const;
   // The slow, obvious route: over all triangles. What the tests compare with.
-  Nearest nearest_by_all(const Eigen::Vector3d& p) const {
-    return nearest_among(triangles_of(lists_[deep]), p);
-  }
+  Nearest nearest_by_all(const Eigen::Vector3d& p) const { return nearest_among(lists_[deep], p); }
 
  private:
   struct Closest {  // on one triangle
@@ -62,25 +59,19 @@ class TriangleCollider final : public Collider {
   void check_orientation();
   void lay_out_grid();
   void refine(const Eigen::Vector3i& cell, int size, const std::vector<int>& candidates);
-  // Triangles of one cell.
-  struct List {
-    int first, count;
-  };
   struct Plane {  // n . p - offset
     double x, y, z, offset;
   };
   // Whether p, of a cell that is not outside, is deeper than `depth` inside the mesh; if so,
   // `plane` keeps it out. Of a convex mesh `witness` is the plane that shows that it is not, or
   // will once it has pushed it out.
-  bool touches(const List& list, const Eigen::Vector3d& p, double depth, ContactPlane& plane,
-               Memory::RowXpr witness) const;
+  bool touches(std::span<const int> list, const Eigen::Vector3d& p, double depth,
+               ContactPlane& plane, Memory::RowXpr witness) const;
   // A plane that p is in front of, and the mesh behind, if there is one: p is outside the box, or
   // in one of its cells that is outside.
   void show_outside(const Eigen::Vector3d& p, Memory::RowXpr witness, WorkCounters& work) const;
   // The triangle of the list whose plane p is least behind, or most in front of.
-  int least_behind(const List& list, const Eigen::Vector3d& p, double& distance) const;
-  List add_list(const std::vector<int>& triangles);
-  std::span<const int> triangles_of(const List& list) const;
+  int least_behind(std::span<const int> list, const Eigen::Vector3d& p, double& distance) const;
   int cell_at(const Eigen::Vector3d& p) const;  // of cell_; outside where p is outside the box
   std::size_t cell_index(const Eigen::Vector3i& cell) const;
 
@@ -92,10 +83,9 @@ class TriangleCollider final : public Collider {
   bool convex_ = false;
   std::vector<std::array<Eigen::Vector3d, 7>> pseudonormal_;  // per triangle, by feature
   Eigen::Vector3d low_, cell_size_, inverse_cell_size_;
-  std::vector<int> cell_;  // its list, or outside
-  std::vector<List> lists_;
-  std::vector<int> listed_;
-  std::vector<Plane> planes_;  // of the faces
+  std::vector<int> cell_;                // its list, or outside
+  std::vector<std::vector<int>> lists_;  // triangles
+  std::vector<Plane> planes_;            // of the faces
 };
 
 }  // namespace inextensible

@@ -65,8 +65,8 @@ class Bdf2Stepper final : public FilterStepper {
 
  private:
   bool unconstrained(const State& state, double h, Positions& x) override;
-  StepResult end_velocities(const State& start, double h, const Positions& filtered,
-                            const Positions& x, Positions& v) override;
+  StepResult end_velocities(const State& start, double h, const Positions& x,
+                            Positions& v) override;
   // x^{n+1} before the filter, and acceleration_. known: the last step's history goes on.
   void explicit_solve(const State& state, double h, bool known, Positions& x);
   bool implicit_solve(const State& state, double h, bool known, Positions& x);
@@ -75,27 +75,6 @@ class Bdf2Stepper final : public FilterStepper {
   Positions acceleration_;     // m/s^2, at x_ahead_
   Positions x_ahead_;          // x^n + h v^n, with shear or bending only
   Positions flight_velocity_;  // with implicit forces only
-};
-
-// BDF2 around a method that is a backward Euler step of its own (Choi and Ko 2002 take implicit
-// springs in BDF2). With s = (x, v), the formula is that step over beta h from the state
-// alpha s^n + (1 - alpha) s^{n-1}, whose time is (1 - beta) h after s^n.
-class Bdf2OfEuler final : public Stepper {
- public:
-  Bdf2OfEuler(std::shared_ptr<const Problem> problem, std::unique_ptr<Stepper> euler);
-  const Positions& filtered_positions() const override { return euler_->filtered_positions(); }
-  const char* linear_solver() const override { return euler_->linear_solver(); }
-  double reciprocal_condition() const override { return euler_->reciprocal_condition(); }
-
- private:
-  StepResult solve(const State& state, double h, Positions& x) override;
-  StepResult end_velocities(const State& start, double h, const Positions& filtered,
-                            const Positions& x, Positions& v) override;
-
-  std::unique_ptr<Stepper> euler_;
-  Bdf2History history_;
-  Positions gravity_;  // of every vertex
-  State ahead_;        // alpha s^n + (1 - alpha) s^{n-1}, then s^{n+1}
 };
 
 }  // namespace inextensible

@@ -7,14 +7,11 @@
 
 namespace inextensible {
 
-Stepper::Stepper(std::shared_ptr<const Problem> problem, ContactsElsewhere)
+Stepper::Stepper(std::shared_ptr<const Problem> problem, bool own_contacts)
     : problem_(std::move(problem)),
       next_(3, problem_->vertices()),
-      velocity_(3, problem_->vertices()) {}
-
-Stepper::Stepper(std::shared_ptr<const Problem> problem)
-    : Stepper(std::move(problem), ContactsElsewhere{}) {
-  if (!problem_->collider()) return;
+      velocity_(3, problem_->vertices()) {
+  if (!own_contacts || !problem_->collider()) return;
   contacts_ = std::make_unique<Contacts>(*problem_);
   filtered_.resize(3, problem_->vertices());
 }
@@ -48,7 +45,7 @@ StepResult Stepper::attempt(State& state, double h) {
   // A sum is not finite if any term is not.
   if (!std::isfinite(next_.sum()))
     return {Status::not_finite, result.iterations, -1, 0, "a position overflowed"};
-  const StepResult end = end_velocities(state, h, filtered_positions(), next_, velocity_);
+  const StepResult end = end_velocities(state, h, next_, velocity_);
   if (!end) return end;
   if (!std::isfinite(velocity_.sum()))
     return {Status::not_finite, result.iterations, -1, 0, "a velocity overflowed"};
@@ -71,8 +68,7 @@ const State& Stepper::with_pins_at_end(const State& state, double h) {
   return moved_;
 }
 
-StepResult Stepper::end_velocities(const State& start, double h, const Positions& /*filtered*/,
-                                   const Positions& x, Positions& v) {
+StepResult Stepper::end_velocities(const State& start, double h, const Positions& x, Positions& v) {
   v = (x - start.x) * (1 / h);
   return {};
 }

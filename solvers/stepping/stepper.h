@@ -36,7 +36,8 @@ class IterateObserver {
 
 class Stepper {
  public:
-  explicit Stepper(std::shared_ptr<const Problem> problem);
+  // own_contacts: false for a stepper around another one, which looks after contacts.
+  explicit Stepper(std::shared_ptr<const Problem> problem, bool own_contacts = true);
   virtual ~Stepper() = default;
   Stepper(const Stepper&) = delete;
   Stepper& operator=(const Stepper&) = delete;
@@ -67,21 +68,15 @@ class Stepper {
   virtual void observe(IterateObserver* /*observer*/) {}
 
  protected:
-  // For a stepper around another one, which looks after contacts.
-  struct ContactsElsewhere {};
-  Stepper(std::shared_ptr<const Problem> problem, ContactsElsewhere);
-
   // Writes the inextensible positions at the end of the step to x; adds to work_ and phases_. Pins
   // that follow the body are, in `state`, where they end the step, without velocity: methods treat
   // them as if they never moved.
   virtual StepResult solve(const State& state, double h, Positions& x) = 0;
 
   // Writes the velocities at the end of the step to v, from the positions x after the collision
-  // filter; `filtered` are those before it, the same object where there is no collider. One-step
-  // methods take v = (x - x^n) / h. A method that remembers earlier steps does so here; it may
-  // still refuse.
-  virtual StepResult end_velocities(const State& start, double h, const Positions& filtered,
-                                    const Positions& x, Positions& v);
+  // filter. One-step methods take v = (x - x^n) / h. A method that remembers earlier steps does so
+  // here; it may still refuse.
+  virtual StepResult end_velocities(const State& start, double h, const Positions& x, Positions& v);
 
   // Where all vertices, pins that follow the body as well, are at the start of the step.
   const Positions& start_positions() const { return *start_; }

@@ -9,7 +9,7 @@
 // edge, so nothing needs to be permuted; and K has the right inertia, M + H positive definite on
 // the null space of J, if and only if A across g is positive definite in every block.
 //
-// Spelled out as numbers, as in block_tridiagonal.cpp.
+// Spelled out as numbers, as in tridiagonal.cpp.
 #pragma once
 
 #include <cmath>

@@ -6,7 +6,7 @@
 
 #include <limits>
 
-#include "solvers/linear/spd_solvers.h"
+#include "solvers/linear/spd_solver.h"
 #include "solvers/problem/forces.h"
 #include "solvers/systems/schur_complement.h"
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solvers/linear/spd_solvers.h"
-
 namespace inextensible {
 namespace {
 
@@ -36,9 +34,11 @@ ConstraintSystem::ConstraintSystem(const Problem& problem, double strain_limit,
 
 bool ConstraintSystem::factor(const Eigen::Matrix3Xd& u, const Contacts* contacts,
                               WorkCounters& work, double damping) {
-  schur_->assemble(u, solver_->values());
-  if (damping > 0) schur_->scale_diagonal(1 + damping, solver_->values());
-  if (contacts) schur_->subtract_contacts(*contacts, u, u, solver_->values());
+  double* values = solver_->values();
+  const SymmetricPattern& pattern = schur_->pattern();
+  schur_->assemble(u, values);
+  for (int k = 0; damping > 0 && k < pattern.n; ++k) values[pattern.diagonal(k)] *= 1 + damping;
+  if (contacts) schur_->subtract_contacts(*contacts, u, u, values);
   ++work.assemblies;
   ++work.factorizations;
   const bool factored = solver_->factor();

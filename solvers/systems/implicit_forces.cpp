@@ -130,13 +130,15 @@ bool ImplicitForces::advance(const State& start, double h, double scale, double 
 // About y it is (M + h / 2 D + s^2 L) theta (x0 - y) = s^2 (-grad V(y_theta) - D (y - x^n) / h),
 // with s = theta h.
 bool ImplicitForces::advance_inside(const State& start, double h, double theta, Positions& y,
-                                    WorkCounters& work) {
+                                    Positions& x0, WorkCounters& work) {
+  free_flight(problem_, start, h, 0.5 * h * h, y);
+  x0 = y;
   inside_ = (1 - theta) * start.x + theta * y;
   velocity_ = (y - start.x) * (1 / h);
   find_forces(start, 0.5 * h, late(h), inside_, velocity_, work);
   for (const int vertex : free_vertex_)
     force_.col(vertex) -= problem_.mass()[vertex] * problem_.gravity();
-  return add_solution(theta * h, 0.5 * h, late(h), 1 / theta, y, work);
+  return add_solution(theta * h, 0.5 * h, late(h), 1 / theta, x0, work);
 }
 
 bool ImplicitForces::add_solution(double scale, double drag, Late late, double factor, Positions& y,

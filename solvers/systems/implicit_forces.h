@@ -48,9 +48,10 @@ class ImplicitForces {
   bool advance(const State& start, double h, double scale, double ahead, const Positions& w,
                Positions& y, WorkCounters& work);
 
-  // y (3 x n, m) = x^n + h v + h^2 g / 2 in, x0 of the second formula out; theta: 1/2 to 1. In
+  // x0 of the second formula, and its y = x^n + h v + h^2 g / 2 (3 x n, m); theta: 1/2 to 1. In
   // short steps shear and bending are taken at x^n + h v^n / 2. Else as above.
-  bool advance_inside(const State& start, double h, double theta, Positions& y, WorkCounters& work);
+  bool advance_inside(const State& start, double h, double theta, Positions& y, Positions& x0,
+                      WorkCounters& work);
 
  private:
   // What a step of h seconds takes at its end, besides drag.

@@ -65,10 +65,6 @@ void SchurComplement::assemble(const Eigen::Matrix3Xd& left, const Eigen::Matrix
   }
 }
 
-void SchurComplement::scale_diagonal(double factor, double* values) const {
-  for (int l = 0; l < pattern_.n; ++l) values[pattern_.diagonal(l)] *= factor;
-}
-
 void SchurComplement::subtract_contacts(const Contacts& contacts, const Eigen::Matrix3Xd& left,
                                         const Eigen::Matrix3Xd& right, double* values) const {
   const Contacts::Timing measured = contacts.timing();

@@ -27,8 +27,6 @@ class SchurComplement {
   void assemble(const Eigen::Matrix3Xd& u, double* values) const { assemble(u, u, values); }
   void assemble(const Eigen::Matrix3Xd& left, const Eigen::Matrix3Xd& right, double* values) const;
 
-  void scale_diagonal(double factor, double* values) const;
-
   // What contacts take off: a vertex that is held by a plane of normal n moves within it only, so
   // that w (I - n n^T) takes the place of its w. The pattern stays. Friction is left out: what it
   // holds is a local matter.

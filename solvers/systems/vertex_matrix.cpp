@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "solvers/linear/spd_solvers.h"
-
 namespace inextensible {
 
 VertexMatrix::VertexMatrix(const Problem& problem, const Pairs& coupled, std::string_view wanted,

@@ -21,9 +21,8 @@ def pictured(folder: Path, frames: list[int], ends: int = 3) -> Path:
     take = {"label": "one", "strain_limit": 0.01, "step": 1 / 240, "energy_gained": "", "detail": "", "frames": 3,
             "largest_strain": [0.0, 0.0099, 0.005], "seconds": [0.01, 0.03], "sag": {"lower_edge": [0.0, 0.011, 0.022]}}
     other = {**take, "label": "other", "frames": ends, "detail": "gave up at t = 0.06 s: iteration limit" if ends < 3 else ""}
-    (folder / "film.json").write_text(json.dumps({"frames_per_second": 10, "takes": [take, other]}))
-    (folder / "pictures.json").write_text(json.dumps({"width": WIDTH, "height": HEIGHT, "frames": frames, "legend_end": 4,
-                                                      "legend": [[200, 190, 180], [200, 30, 20]]}))
+    (folder / "film.json").write_text(json.dumps({"frames_per_second": 10, "takes": [take, other], "width": WIDTH, "height": HEIGHT,
+                                                  "frames": frames, "legend_end": 4, "legend": [[200, 190, 180], [200, 30, 20]]}))
     for take, rgb in enumerate(((40, 80, 200), (240, 140, 30))):
         for frame in range(3 if take == 0 else ends):
             Image.new("RGB", (WIDTH, HEIGHT), rgb).save(folder / f"{take}-{frame}.ppm")
@@ -72,7 +71,7 @@ def test_captions_tell_strain_so_far_time_and_sag(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name, env, lost, message", [("x.mp4", {"PATH": "/nowhere"}, "", "film.py: ffmpeg missing"),
-                                                      ("x.png", None, "pictures.json", "film.py: ")])
+                                                      ("x.png", None, "film.json", "film.py: ")])
 def test_what_is_missing_is_said_in_a_line(name: str, env: dict | None, lost: str, message: str, tmp_path: Path) -> None:
     pictured(tmp_path, [0])
     (tmp_path / (lost or name)).unlink(missing_ok=True)

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "harness/answers/answer.h"
-#include "harness/scenes/chain_scenes.h"
 #include "harness/scenes/meshes.h"
 #include "solvers/systems/constrained_acceleration.h"
 

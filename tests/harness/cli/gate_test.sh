@@ -55,26 +55,21 @@ timed() {
   edit base.json "$1.json" "[t.update(samples=[$3 * t['samples'][0] * (1 + 0.001 * i) for i in range($2)])
 for p in d['points'] for t in [p['seconds_per_simulated_second']] if t]; d['context']['sentinel'] = $sentinel"
 }
-timed one 1 1
-timed slow1 1 3
-timed five 5 1
-timed slow5 5 3
-timed little 5 1.2
-timed busy 5 1 "{'noisy': True, 'spread': 0.3}"
-timed busy_little 5 1.2 "{'noisy': True, 'spread': 0.3}"
-timed fast_machine 5 1 "{'noisy': False, 'seconds': [1e-3, 1.01e-3]}"
-timed slow_machine 5 1.2 "{'noisy': False, 'seconds': [1.3e-3, 1.31e-3]}"
-while read -r code before after words; do
-  exits "$code" "$words" compare "$before.json" "$after.json"
+noisy="{'noisy': True, 'spread': 0.3}"
+fast="{'noisy': False, 'seconds': [1e-3, 1.01e-3]}"
+slow="{'noisy': False, 'seconds': [1.3e-3, 1.31e-3]}"
+while IFS='|' read -r code before after words; do
+  eval "timed before $before; timed after $after"
+  exits "$code" "$words" compare before.json after.json
 done <<'TABLE'
-6 one slow1 too few runs
-3 five slow5 SLOWER
-0 slow5 five FASTER
-0 busy busy SAME
-3 busy slow5 SLOWER
-3 five little SLOWER
-6 five busy_little too noisy a machine
-6 fast_machine slow_machine own speed varied by as much
+6|1 1|1 3|too few runs
+3|5 1|5 3|SLOWER
+0|5 3|5 1|FASTER
+0|5 1 "$noisy"|5 1 "$noisy"|SAME
+3|5 1 "$noisy"|5 3|SLOWER
+3|5 1|5 1.2|SLOWER
+6|5 1|5 1.2 "$noisy"|too noisy a machine
+6|5 1 "$fast"|5 1.2 "$slow"|own speed varied by as much
 TABLE
 
 # Not comparable: another build, other parameters, nothing in common. The way out is printed.

@@ -33,20 +33,24 @@ std::shared_ptr<Reference> falling() {
   return r;
 }
 
-// A run that falls `times_as_far` and is `off` metres beside.
-Measures judged(const std::shared_ptr<const Reference>& reference, double times_as_far, double off,
-                int steps = 5) {
+// A run that falls `times_as_far` and is off[k - 1] metres beside after step k.
+Measures judged(const std::shared_ptr<const Reference>& reference, double times_as_far,
+                const std::vector<double>& off) {
   Judge judge(chain_of_four, {.reference = reference});
   State state = chain_of_four.start;
-  for (int k = 1; k <= steps; ++k) {
+  for (const double beside : off) {
     judge.before(state, 0.04);
-    state.time = 0.04 * k;
+    state.time += 0.04;
     state.x = chain_of_four.start.x;
     state.x.row(1).array() -= times_as_far * state.time;
-    state.x.row(2).setConstant(off);
+    state.x.row(2).setConstant(beside);
     judge.after(state.x, state, 0.04);
   }
   return judge.finish();
+}
+Measures judged(const std::shared_ptr<const Reference>& reference, double times_as_far, double off,
+                int steps = 5) {
+  return judged(reference, times_as_far, std::vector<double>(steps, off));
 }
 
 // However far off a run is, its error is over the sample times at which 3 gap is at most the level.
@@ -74,17 +78,7 @@ TEST(Judge, CountsTheSameSampleTimesForAllRuns) {
 TEST(Judge, ErrorIsTheLargestOverTime) {
   const auto reference = falling();
   reference->gap.assign(5, 0.001);
-  Judge judge(chain_of_four, {.reference = reference});
-  State state = chain_of_four.start;
-  const double off[] = {0, 0.002, 0.011, 0.003, 0.004};
-  for (int k = 1; k <= 5; ++k) {
-    judge.before(state, 0.04);
-    state.time = 0.04 * k;
-    state.x = reference->positions[static_cast<std::size_t>(k - 1)];
-    state.x.row(2).setConstant(off[k - 1]);
-    judge.after(state.x, state, 0.04);
-  }
-  const Measures found = judge.finish();
+  const Measures found = judged(reference, 1, {0, 0.002, 0.011, 0.003, 0.004});
   EXPECT_NEAR(found.trajectory, 0.011, 1e-12);
   EXPECT_NEAR(found.trajectory_mean, 0.004, 1e-12);
   EXPECT_TRUE(within_error(found, 0.02));

@@ -10,7 +10,7 @@
 #include "harness/base/files.h"
 #include "harness/judge/drive.h"
 #include "harness/judge/judge.h"
-#include "harness/judge/shape.h"
+#include "harness/judge/mechanics.h"
 #include "support/effort.h"
 #include "support/random_mesh.h"
 #include "support/scenes.h"

@@ -1,7 +1,5 @@
 // Cloth from files: the square of the built-in scenes, read back, must be that square, however its
 // faces are cut; and what can be no cloth is refused in one line.
-#include "harness/scenes/mesh_scenes.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +11,7 @@
 #include <set>
 
 #include "harness/judge/mechanics.h"
-#include "harness/scenes/cloth_mesh.h"
+#include "harness/scenes/scene.h"
 #include "solvers/registry.h"
 #include "support/refusal.h"
 

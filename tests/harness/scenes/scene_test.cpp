@@ -3,12 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "harness/judge/mechanics.h"
 #include "solvers/problem/edge_constraints.h"
 #include "solvers/problem/triangle_collider.h"
-#include "solvers/registry.h"
 #include "solvers/systems/schur_complement.h"
 #include "support/scenes.h"
 
@@ -16,20 +17,12 @@ namespace harness {
 namespace {
 
 using inextensible::Positions;
-using inextensible::State;
 using inextensible::TriangleCollider;
 using testing::build;
 
 double mirror_defect(const Scene::Mirror& mirror, const Positions& x) {
   const Positions reflected = x - 2 * mirror.normal * (mirror.normal.transpose() * x);
   return (reflected - x(Eigen::all, mirror.image)).colwise().norm().maxCoeff();
-}
-
-double least_distance(const TriangleCollider& body, const Positions& x) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const auto& place : x.colwise())
-    least = std::min(least, body.nearest(place).signed_distance);
-  return least;
 }
 
 TEST(EveryScene, StartsAsItPromises) {
@@ -44,8 +37,13 @@ TEST(EveryScene, StartsAsItPromises) {
       EXPECT_LT(mirror_defect(mirror, scene.start.x), 1e-12);
       EXPECT_LT(mirror_defect(mirror, scene.start.v), 1e-12);
     }
+    std::set<std::pair<int, int>> sides;  // as triangles pass them: one side of the cloth is out
+    for (const auto& [a, b, c] : scene.triangles)
+      for (const auto& side : {std::pair(a, b), {b, c}, {c, a}})
+        EXPECT_TRUE(sides.insert(side).second);
     if (const auto* body = dynamic_cast<const TriangleCollider*>(scene.problem->collider())) {
-      EXPECT_GT(least_distance(*body, scene.start.x), 0);
+      for (const auto& place : scene.start.x.colwise())
+        EXPECT_GT(body->nearest(place).signed_distance, 0);
     }
     if (type.exact) {
       constexpr double dt = 1e-6;
@@ -54,31 +52,6 @@ TEST(EveryScene, StartsAsItPromises) {
       EXPECT_LT(((soon - now) / dt - scene.start.v).cwiseAbs().maxCoeff(), 1e-4);
     }
     EXPECT_TRUE(find_scene(type.kind()));
-  }
-}
-
-// Links that hang between two pins at rest.
-TEST(Catenary, OfLinksStaysWhereItHangs) {
-  constexpr int links = 12;
-  const Scene scene =
-      build("catenary", {{"n", links + 1}, {"length", 1.2}, {"mass", links + 1}, {"slack", 1.5}});
-  EXPECT_NEAR(scene.start.x(0, links), 0.8, 1e-12);
-  EXPECT_NEAR(scene.start.x(1, links), 0, 1e-12);
-  const auto drift = [&](const char* solver, double h) {
-    const auto stepper = inextensible::make_stepper(solver, scene.problem, {1e-11});
-    State state = scene.start;
-    while (state.time < 1 - 0.5 * h)
-      if (!stepper->advance(state, h)) return std::nan("");
-    return (state.x - scene.start.x).cwiseAbs().maxCoeff();
-  };
-  // Solutions of the step's equations stay; what the strain limit leaves of each fall adds up.
-  for (const char* solver : {"shake", "rattle", "icd"})
-    EXPECT_LT(drift(solver, 0.01), 1e-6) << solver;
-  // Iterations that end elsewhere on the constraints shift the equilibrium, less by smaller steps.
-  for (const char* solver : {"fast_projection", "fast_projection@bdf2", "gauss_seidel"}) {
-    const double coarse = drift(solver, 0.01), fine = drift(solver, 0.0025);
-    EXPECT_LT(coarse, 1e-3) << solver;
-    EXPECT_LT(fine, coarse / 4) << solver << ": " << coarse << ", " << fine;
   }
 }
 
@@ -94,17 +67,13 @@ TEST(Drape, HasThePapersSizes) {
   EXPECT_EQ(schur.pattern().entries(), 39338);
 }
 
-// Rows lie below their pins, as the cloth was cut; marks are the middles of the first and the last
-// row.
+// Rows lie below their pins; marks are the middles of the first and the last row.
 TEST(HungPatch, IsThePatchTurnedAboutItsPins) {
-  for (const double tilt : {0.0, 0.3}) {
-    const Scene hung = build("hung_patch", {{"n", 9}, {"tilt", tilt}, {"side", 2}});
-    EXPECT_LT(strain_range(*hung.problem, hung.start.x).most, 1e-14);
-    ASSERT_EQ(hung.marks.size(), 2u);
-    EXPECT_EQ(hung.start.x.col(hung.marks[0].vertex), Eigen::Vector3d::Zero());
-    EXPECT_NEAR(hung.start.x(1, hung.marks[1].vertex), -2 * std::cos(tilt), 1e-15);
-    EXPECT_EQ(hung.marks[1].height, -2);
-  }
+  const Scene hung = build("hung_patch", {{"n", 9}, {"tilt", 0.3}, {"side", 2}});
+  ASSERT_EQ(hung.marks.size(), 2u);
+  EXPECT_EQ(hung.start.x.col(hung.marks[0].vertex), Eigen::Vector3d::Zero());
+  EXPECT_NEAR(hung.start.x(1, hung.marks[1].vertex), -2 * std::cos(0.3), 1e-15);
+  EXPECT_EQ(hung.marks[1].height, -2);
 }
 
 TEST(Icosphere, IsMirrorSymmetric) {
@@ -116,9 +85,8 @@ TEST(Icosphere, IsMirrorSymmetric) {
       for (int axis = 0; axis < 3; ++axis) {
         Eigen::Vector3d image = v;
         image[axis] = -image[axis];
-        EXPECT_TRUE(
-            std::any_of(mesh.vertices.begin(), mesh.vertices.end(),
-                        [&](const Eigen::Vector3d& w) { return (w - image).norm() < 1e-14; }));
+        EXPECT_TRUE(std::ranges::any_of(
+            mesh.vertices, [&](const Eigen::Vector3d& w) { return (w - image).norm() < 1e-14; }));
       }
     }
   }

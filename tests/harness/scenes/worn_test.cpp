@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "harness/judge/drive.h"
 #include "harness/judge/mechanics.h"
 #include "solvers/registry.h"
-#include "solvers/stepping/step_controller.h"
 #include "support/scenes.h"
 
 namespace harness {
@@ -27,13 +27,8 @@ State after(const Scene& scene, double limit, double seconds) {
   State state = scene.start;
   const auto stepper =
       inextensible::make_stepper("yarn_projection", scene.problem, {limit, 1, {}, &state});
-  inextensible::StepController controller(*stepper, {.largest = h});
-  while (state.time < seconds - 1e-9) {
-    const auto result = controller.advance(state);
-    if (result) continue;
-    ADD_FAILURE() << "gave up at t = " << state.time << ": " << result.detail;
-    break;
-  }
+  const DriveState driven = drive(*stepper, state, {h, std::lround(seconds / h), usual_halvings});
+  EXPECT_EQ(driven.end, DriveState::End::arrived) << state.time << " s: " << driven.result.detail;
   return state;
 }
 

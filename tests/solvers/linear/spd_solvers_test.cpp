@@ -1,14 +1,13 @@
 // What every linear solver of the list promises, on every matrix that it takes, against dense
 // algebra; and what some of them promise beyond that.
-#include "solvers/linear/spd_solvers.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <cmath>
 #include <limits>
 
-#include "solvers/linear/mixed_cholesky.h"
+#include "solvers/linear/multifrontal_cholesky.h"
+#include "solvers/linear/spd_solver.h"
 #include "solvers/problem/edge_constraints.h"
 #include "support/random_graph.h"
 

@@ -5,7 +5,7 @@
 
 #include <set>
 
-#include "solvers/linear/spd_solvers.h"
+#include "solvers/linear/spd_solver.h"
 #include "solvers/problem/edge_constraints.h"
 #include "support/random_mesh.h"
 

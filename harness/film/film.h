@@ -1,0 +1,155 @@
+// Films: the positions of a scene's vertices at the frames of a film, by several solvers; pictures
+// of every take at some frames, by the same camera, with light and shadow (ray tracing by Embree),
+// strain as colour, and yarns as lines on the cloth; and files for other programs.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "harness/points/contestant.h"
+#include "harness/scenes/scene.h"
+#include "solvers/problem/triangle_collider.h"
+
+namespace harness {
+
+// ---- runs (record.cpp) ----
+
+struct FilmSpec {
+  std::string scene;
+  SceneParameters parameters;  // complete
+  Contestants solvers;
+  std::vector<double> strain_limits;  // every solver at each
+  double step = 0.01;                 // s; shortened to a whole part of a frame
+  double frames_per_second = 30;
+};
+
+// One run.
+struct FilmRun {
+  std::string solver, label;
+  double strain_limit = 0;
+  double step = 0;                              // s
+  std::string detail;                           // why it ended early; empty: it did not
+  std::string energy_gained;                    // why it fails the energy check; empty: it passes
+  std::vector<inextensible::Positions> frames;  // from the start on
+  std::vector<double> largest_strain;           // of each frame, as delivered
+  double smallest_step = 0;                     // s; a step that is refused is halved
+  std::vector<double> seconds;                  // of wall time, each frame but the first took
+};
+
+// What there is to see besides vertices.
+struct FilmScene {
+  Scene scene;
+  inextensible::TriangleMesh body;             // empty: no obstacle
+  std::vector<inextensible::Pose> body_poses;  // of each frame; empty: it stays
+};
+
+struct Recording {
+  FilmSpec spec;
+  FilmScene stage;
+  std::vector<FilmRun> takes;
+};
+
+// Number of frames of the whole film: the one at the start, and as many as the scene's duration
+// has.
+std::size_t frames_in(const FilmSpec& spec);
+
+// Springs get the stiffness that keeps the limit. told: of every frame. Throws Interrupted.
+Recording record(const FilmSpec& spec, const std::function<bool()>& interrupted,
+                 const std::function<void(const FilmRun&)>& told);
+
+// Where the body's corners are at a frame.
+inextensible::Positions body_at(const FilmScene& stage, std::size_t frame);
+
+// ---- the camera ----
+
+struct View {
+  Eigen::Vector3d centre, eye;         // m
+  Eigen::Vector3d right, up, towards;  // unit vectors; towards: from the centre to the eye
+  double size = 1;                     // half of what a picture shows, m
+  double aspect = 1;                   // a picture's height over its width
+  double tangent = 1;                  // of half the angle that a picture's width covers
+
+  int height(int width) const;  // pixels
+  // The direction from the eye through a point of the picture: x from -1 (left) to 1, y from -1
+  // (below) to 1.
+  Eigen::Vector3d ray(double x, double y) const;
+};
+
+// Sees body and cloth of all takes at the frames that are shown, as long as the cloth stays near
+// the body, or near where it started: what falls off leaves the picture, and does not make it
+// small. A take that has ended is shown as it was last.
+View view_of(const Recording& recording, const std::vector<std::size_t>& frames);
+
+// ---- light and colours (tracer.cpp) ----
+
+// Light is computed in linear colours from 0 to 1, files hold sRGB.
+Eigen::Vector3d linear(const Eigen::Vector3d& srgb);
+std::array<std::uint8_t, 3> shade(const Eigen::Vector3d& rgb);  // in sRGB, of a linear colour
+
+// What a picture shows at one time; the stage must outlive it.
+struct Shot {
+  const FilmScene& stage;         // without triangles its edges are drawn, as a rope
+  inextensible::Positions cloth;  // m
+  // Which sides of each triangle are yarns: 1 from corner 0 to 1, 2 from 1 to 2, 4 from 2 to 0.
+  std::vector<std::uint8_t> yarns = {};
+  Eigen::Matrix3Xd colours = {};      // of each vertex, linear
+  inextensible::Positions body = {};  // m; empty: none
+  double yarn = 0;                    // half the width of a line, or the radius of a rope, m
+  double yarn_shade = 0;              // how much darker a line is: 0 to 1
+  double thickness = 0;  // so far the cloth may lie inside the body, and is seen nevertheless, m
+};
+
+struct Pixels {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgb;  // rows from above, sRGB
+};
+
+// Samples a pixel: samples x samples. Every pixel takes the same pattern of rays, so that flat
+// cloth has one shade. Usable from several threads.
+Pixels trace(const Shot& shot, const View& view, int width, int samples);
+
+// ---- pictures ----
+
+struct PictureSpec {
+  std::vector<std::size_t> frames;  // in rising order
+  int width = 480;                  // pixels
+  int samples = 2;                  // a pixel has samples x samples
+};
+
+// What a take shows at a frame.
+Shot shot_of(const Recording& recording, const View& view, std::size_t take, std::size_t frame,
+             int width);
+
+// Into a folder that is there: <take>-<frame>.ppm for each frame that the take has, and its last
+// one if it ended early; film.json with the width, the height, the frames, what is said of each
+// take, and the colours of strain over its limit from 0 to legend_end. On all cores. told: how many
+// of all are done. Throws FileError, Interrupted.
+void write_pictures(const std::string& folder, const Recording& recording, const PictureSpec& spec,
+                    const std::function<bool()>& interrupted,
+                    const std::function<void(std::size_t done, std::size_t all)>& told);
+
+// ---- for other programs (exports.cpp) ----
+
+// A take as files that other programs read. All write into a folder, which is made, and return the
+// paths of what to open. A body beside the cloth has files of its own, <name>-body...: one where it
+// stays, else as many as the cloth.
+
+// Wavefront OBJ, one file a frame, <name>-0001.obj and so on: faces of a cloth, lines of a chain.
+std::vector<std::string> write_obj(const Recording& recording, const FilmRun& take,
+                                   const std::string& folder, const std::string& name);
+
+// VTK XML for ParaView: a .vtp a frame with the strain of every edge as a field, and a .pvd that
+// plays them.
+std::vector<std::string> write_vtk(const Recording& recording, const FilmRun& take,
+                                   const std::string& folder, const std::string& name);
+
+// The first frame as OBJ and a point cache (PC2) for Blender's modifier "Mesh Cache", which reads
+// it as an animated object.
+std::vector<std::string> write_pc2(const Recording& recording, const FilmRun& take,
+                                   const std::string& folder, const std::string& name);
+
+}  // namespace harness
