@@ -3,10 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
 
 #include "harness/base/small_runs.h"
 #include "harness/base/text.h"
 #include "harness/points/point_json.h"
+#include "harness/scenes/scene.h"
 
 namespace harness {
 namespace {
@@ -80,17 +85,45 @@ void find_reference(const RunLimits& limits, const PointSpec& spec) {
   if (limits.references) limits.references->find(spec.scene, spec.scene_parameters);
 }
 
+// Runs that follow each other are mostly of one scene: the parent builds it for all their children,
+// since the grid of a body takes longer than many a run.
+class LastScene {
+ public:
+  // Null: it cannot be built, and the run itself says why.
+  const Scene* of(const PointSpec& spec) {
+    if (scene_ && name_ == spec.scene && parameters_ == spec.scene_parameters) return &*scene_;
+    scene_.reset();
+    try {
+      scene_ = find_scene(spec.scene)->build(spec.scene_parameters);
+    } catch (const std::invalid_argument&) {
+      return nullptr;
+    }
+    name_ = spec.scene;
+    parameters_ = spec.scene_parameters;
+    return &*scene_;
+  }
+
+ private:
+  std::string name_;
+  SceneParameters parameters_;
+  std::optional<Scene> scene_;
+};
+
 }  // namespace
 
 SweepRunners isolated(const SweepRunners& inner, double memory) {
-  return wrapped(inner, [memory](const PointSpec& spec, const RunLimits& limits, const auto& call) {
+  return wrapped(inner, [memory, scenes = std::make_shared<LastScene>()](
+                            const PointSpec& spec, const RunLimits& limits, const auto& call) {
     find_reference(limits, spec);
+    // Where memory is limited, building is part of what is.
+    const Scene* scene = memory > 0 ? nullptr : scenes->of(spec);
     return in_child(
         {limits.timeout, memory, limits.interrupted},
         [&](Heartbeat& heartbeat) {
           RunLimits own = limits;
           own.interrupted = nullptr;  // that is the parent's business
           own.heartbeat = &heartbeat;
+          own.scene = scene;
           return to_json(call(own));
         },
         point_of, [&](const ChildOutcome& child) { return lost(spec, child, limits.timeout); });

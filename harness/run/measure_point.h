@@ -11,6 +11,7 @@
 namespace harness {
 
 struct Heartbeat;
+struct Scene;
 
 inline constexpr double least_sample = 0.02;  // s: a thousand times a block of steps
 // s. Two looks of a millisecond say little of what happens in between; and what happens for
@@ -29,6 +30,7 @@ struct RunLimits {
   double hopeless = 1e300;
   std::function<bool()> interrupted = nullptr;            // asked after every step
   std::shared_ptr<ReferenceFolder> references = nullptr;  // null: no errors against references
+  const Scene* scene = nullptr;    // the spec's, where it has been built already
   Heartbeat* heartbeat = nullptr;  // notified of every step; see child_process.h
   int most_retaken = 3;            // times that a sample may be taken again
   bool timed = true;               // false: times are not used, and one run is a sample

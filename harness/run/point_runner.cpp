@@ -80,7 +80,7 @@ PointRunner::PointRunner(const PointSpec& spec, const RunLimits& limits)
     : spec_(spec),
       limits_(limits),
       start_(Clock::now()),
-      scene_(find_scene(spec.scene)->build(spec.scene_parameters)),
+      scene_(limits.scene ? *limits.scene : find_scene(spec.scene)->build(spec.scene_parameters)),
       backend_(*inextensible::find_backend(spec.solver)),
       steps_(static_cast<int>(std::lround(scene_.duration / spec.step))),
       first_state_(start_of(scene_, backend_, spec.step)) {

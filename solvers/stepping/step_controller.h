@@ -26,7 +26,10 @@ class StepController {
   // counter rejected_steps.
   StepResult advance(State& state);
 
-  double next() const;  // s, of the next attempt
+  // s: of the last accepted step; of the smallest accepted one; of the next attempt.
+  double last() const { return last_; }
+  double smallest() const { return smallest_; }
+  double next() const;
   // Whether the accepted steps add up to a multiple of `largest`.
   bool aligned() const { return place_ == 0; }
 
@@ -38,6 +41,7 @@ class StepController {
   int halvings_ = 0;
   int successes_ = 0;       // at this size
   std::int64_t place_ = 0;  // within the largest step, in units of the smallest
+  double last_ = 0, smallest_;
 };
 
 }  // namespace inextensible

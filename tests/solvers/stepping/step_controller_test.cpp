@@ -44,6 +44,7 @@ TEST(StepController, HalvesToTheLargestAcceptedStepAndCountsEveryRefusal) {
   State state{Positions::Zero(3, 1), Positions::Zero(3, 1), 0};
   ASSERT_TRUE(controller.advance(state));
   EXPECT_EQ(stepper.attempts, (std::vector<double>{1, 0.5, 0.25, 0.125, 0.0625}));
+  EXPECT_EQ(controller.last(), 0.0625);
   EXPECT_EQ(state.time, 0.0625);
   EXPECT_EQ(stepper.work().rejected_steps, 4);
   EXPECT_EQ(stepper.work().steps, 1);
@@ -59,10 +60,11 @@ TEST(StepController, GrowsBackAfterAHardStretchAndMeetsEveryMultipleOfTheLargest
     EXPECT_EQ(controller.aligned(), state.time == std::floor(state.time)) << state.time;
     aligned += controller.aligned() ? 1 : 0;
     // A step begins at a multiple of itself.
-    EXPECT_EQ(std::fmod(state.time, stepper.attempts.back()), 0) << state.time;
+    EXPECT_EQ(std::fmod(state.time, controller.last()), 0) << state.time;
   }
   EXPECT_EQ(aligned, 6);
-  EXPECT_EQ(stepper.attempts.back(), 1);
+  EXPECT_EQ(controller.last(), 1);
+  EXPECT_EQ(controller.smallest(), 0.125);
 }
 
 TEST(StepController, GivesUpBelowTheSmallestStepAndLeavesTheState) {
