@@ -125,6 +125,7 @@ struct ClaimVerdict : claims::Verdict {
   std::string id, where, statement;
   std::string rule;  // how the verdict follows from what was measured
 };
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ClaimVerdict, id, statement, verdict, measured, rule)
 
 // Throws UsageError for a result of --untimed, whose times say nothing.
 void check_timed(const nlohmann::json& result);
