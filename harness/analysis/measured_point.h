@@ -71,6 +71,9 @@ struct Role {
   bool unranked = false;  // shown beside its tuned self, not ranked
   bool again = false;     // the second of an A/A pair
   bool ranked() const { return competes && !unranked && !again; }
+  // Whose row its points stand in where any settings may be chosen: an unranked one's in its
+  // solver's, but for the second of an A/A pair, which would give the first a second chance.
+  const std::string& row() const { return unranked && !again ? solver : name; }
 };
 
 // One file's legend and noise; contestants that it does not name are their own family.
@@ -79,9 +82,6 @@ class ContestantRoles {
   ContestantRoles() = default;
   explicit ContestantRoles(const nlohmann::json& document);
   Role of(const std::string& contestant) const;
-  // Whose row a contestant's points stand in where any settings may be chosen: an unranked one's in
-  // its solver's, but for the second of an A/A pair, which would give the first a second chance.
-  std::string at_any_settings(const std::string& contestant) const;
   void add(const ContestantRoles& other);  // what is known already stays
 
  private:

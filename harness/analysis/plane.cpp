@@ -61,9 +61,9 @@ Cell cell_of(const std::vector<Point>& here, double limit, double level,
       cell.known_until = std::max(cell.known_until, error.until);
   }
   for (const auto& [name, own] : grouped(here, [](const Point& p) { return p.contestant(); })) {
+    const Role role = roles.of(name);
     if (const auto entry = fastest_of(own, level))
-      cell.entries.push_back({roles.of(name), roles.at_any_settings(name), false, *entry,
-                              entry->error_at(level).distance});
+      cell.entries.push_back({role, role.row(), false, *entry, entry->error_at(level).distance});
   }
   rank(cell.entries);
   if (!cell.first()) cell.empty_because = why_empty(here, level, cell.known_until);
@@ -133,7 +133,7 @@ BudgetTable table_of(std::vector<Point> points, const ContestantRoles& roles,
                      const std::vector<double>& budgets) {
   const PointSpec& one = points.front().spec();
   BudgetTable table{one.scene, one.resolution, one.vertices, budgets, {}};
-  const auto row_of = [&](const Point& p) { return roles.at_any_settings(p.contestant()); };
+  const auto row_of = [&](const Point& p) { return roles.of(p.contestant()).row(); };
   for (auto& [row, own] : grouped(points, row_of)) {
     Budgeted line{row, {}, {}};
     std::ranges::stable_sort(own, {}, frame_seconds);

@@ -90,11 +90,10 @@ Slope slope_of_ratio(const Curve& a, const Curve& b);
 std::optional<Point> at(const Curve& curve, double x);
 std::vector<std::string> ids_of(const std::vector<Curve>& curves);
 
-// A claim looked at in several ways, each with its words. The first decides.
+// A claim looked at in several ways, each with its words, of which the first decides: the project's
+// question, an error of at most 2 %, and beside it the paper's own, any motion, and `more`.
 using Ways = std::vector<std::pair<std::string, Verdict>>;
-Verdict in_ways(const Ways& ways);
-// The project's question, an error of at most 2 %, and beside it the paper's own, any motion.
-Ways at_levels(const std::function<Verdict(double level)>& judge);
+Verdict at_levels(const std::function<Verdict(double level)>& judge, const Ways& more = {});
 
 // ---- One function a claim; without a verdict where measurements are missing ----
 

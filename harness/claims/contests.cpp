@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -35,13 +34,14 @@ Verdict growth(const Curve& springs, const Curve& fast,
   return found;
 }
 
-Ways growth_at_levels(const Points& points, const char* sweep,
-                      Answer (*fast_is_better)(const Slope&, double),
-                      std::string (*place)(double)) {
-  return at_levels([=, &points](double level) {
+Verdict growth_at_levels(const Points& points, const char* sweep,
+                         Answer (*fast_is_better)(const Slope&, double),
+                         std::string (*place)(double), const Ways& more = {}) {
+  const auto judge = [=, &points](double level) {
     return growth(points.best("chain", sweep, implicit_springs.name, level),
                   points.best("chain", sweep, fast_projection.name, level), fast_is_better, place);
-  });
+  };
+  return at_levels(judge, more);
 }
 
 std::string effort(const Point& p) {
@@ -83,7 +83,7 @@ std::string first_of_all(const Points& points, const std::string& sweep, const C
   const Curve leaders = points.best("drape", sweep, "", level, vertices);
   std::string all, last;
   for (const auto& entry : fast) {
-    const std::string first = points.roles.at_any_settings(leaders.at(entry.first).contestant());
+    const std::string first = points.roles.of(leaders.at(entry.first).contestant()).row();
     all += first == last ? ", " + words(entry.first)
                          : (all.empty() ? "" : "; ") + first + " at " + words(entry.first);
     last = first;
@@ -161,19 +161,19 @@ Answer smaller(const Steps& a, const Steps& b) {
 }  // namespace
 
 Verdict chain_time_over_strain(const Points& points) {
-  Ways ways = growth_at_levels(points, "strain", below, percent);
-  ways.emplace_back("over the error at any limit",
-                    growth(points.best_at_errors("chain", implicit_springs.name),
-                           points.best_at_errors("chain", fast_projection.name), below, percent));
-  return in_ways(ways);
+  const Verdict over_error =
+      growth(points.best_at_errors("chain", implicit_springs.name),
+             points.best_at_errors("chain", fast_projection.name), below, percent);
+  return growth_at_levels(points, "strain", below, percent,
+                          {{"over the error at any limit", over_error}});
 }
 
 Verdict chain_time_over_resolution(const Points& points) {
-  return in_ways(growth_at_levels(points, "resolution", above, vertices_of));
+  return growth_at_levels(points, "resolution", above, vertices_of);
 }
 
 Verdict chain_speed(const Points& points) {
-  return in_ways(at_levels([&](double level) -> Verdict {
+  return at_levels([&](double level) -> Verdict {
     const auto at_one_percent = [&](const PaperMethod& method) {
       return at(points.best("chain", "strain", method.name, level), 0.01);
     };
@@ -191,7 +191,7 @@ Verdict chain_speed(const Points& points) {
                 ", fast projection " + effort(*fast) +
                 " (the search for a stiffness is not charged)",
             {springs->id(), fast->id()}};
-  }));
+  });
 }
 
 Verdict drape_time_over_strain(const Points& points) {
@@ -199,17 +199,17 @@ Verdict drape_time_over_strain(const Points& points) {
   for (const Point& p : points.all) {
     if (p.scene() == "drape" && p.sweep() == "strain") ++sizes[p.vertices()];
   }
-  return in_ways(at_levels([&](double level) {
+  return at_levels([&](double level) {
     Verdict found;
     for (const auto& size : sizes) {
       if (found.verdict == not_measured) found = drape_over_strain(points, level, size.first);
     }
     return found;
-  }));
+  });
 }
 
 Verdict drape_time_over_resolution(const Points& points) {
-  return in_ways(at_levels([&](double level) -> Verdict {
+  return at_levels([&](double level) -> Verdict {
     const Curve fast = points.best("drape", "resolution", fast_projection.name, level);
     std::map<std::string, Curve> others;
     for (const PaperMethod& method : all_paper_methods) {
@@ -245,7 +245,7 @@ Verdict drape_time_over_resolution(const Points& points) {
             : largest == Answer::yes                    ? verdict_of(all)
                                                         : verdict_of(largest),
             details + first_of_all(points, "resolution", fast, level, count_of), ids_of({fast})};
-  }));
+  });
 }
 
 Verdict matrix_sizes(const Points& points) {
@@ -274,7 +274,7 @@ Verdict matrix_sizes(const Points& points) {
 }
 
 Verdict shake_small_steps(const Points& points) {
-  return in_ways(at_levels([&](double level) -> Verdict {
+  return at_levels([&](double level) -> Verdict {
     std::vector<Answer> answers;
     std::string details;
     std::vector<std::string> evidence;
@@ -302,7 +302,7 @@ Verdict shake_small_steps(const Points& points) {
             "so at " + std::to_string(yes) + " of " + std::to_string(all) + " places, not so at " +
                 std::to_string(no) + details,
             evidence};
-  }));
+  });
 }
 
 }  // namespace harness::claims

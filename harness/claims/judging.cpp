@@ -115,8 +115,7 @@ Curve Points::best(const std::string& scene, const std::string& sweep,
   std::map<std::pair<double, std::string>, std::vector<Point>> places;
   for (const Point& p : in(scene, sweep, vertices)) {
     const Role role = roles.of(p.contestant());
-    if (contestant.empty() ? role.competes && !role.again
-                           : roles.at_any_settings(p.contestant()) == contestant)
+    if (contestant.empty() ? role.competes && !role.again : role.row() == contestant)
       places[{sweep == "strain" ? p.strain_limit() : p.vertices(), p.contestant()}].push_back(p);
   }
   Curve curve;
@@ -129,7 +128,7 @@ Curve Points::best(const std::string& scene, const std::string& sweep,
 Curve Points::best_at_errors(const std::string& scene, const std::string& contestant) const {
   Curve curve;
   for (const Point& p : in(scene, "step")) {
-    if (roles.at_any_settings(p.contestant()) != contestant || !p.ok() || !p.timed()) continue;
+    if (roles.of(p.contestant()).row() != contestant || !p.ok() || !p.timed()) continue;
     for (const double level : {0.1, 0.03, 0.01, 0.003, 0.001, 0.0003, 0.0001}) {
       if (p.within_error(level)) keep_faster(curve, level, p);
     }
@@ -183,7 +182,10 @@ std::vector<std::string> ids_of(const std::vector<Curve>& curves) {
   return ids;
 }
 
-Verdict in_ways(const Ways& ways) {
+Verdict at_levels(const std::function<Verdict(double level)>& judge, const Ways& more) {
+  Ways ways{{"at an error of at most 2 %", judge(headline_error)},
+            {"at any motion", judge(any_motion)}};
+  ways.insert(ways.end(), more.begin(), more.end());
   Verdict all{ways.front().second.verdict, "", {}};
   bool any = false;
   for (const auto& [words, way] : ways) {
@@ -196,11 +198,6 @@ Verdict in_ways(const Ways& ways) {
   }
   if (!any) all.measured.clear();
   return all;
-}
-
-Ways at_levels(const std::function<Verdict(double level)>& judge) {
-  return {{"at an error of at most 2 %", judge(headline_error)},
-          {"at any motion", judge(any_motion)}};
 }
 
 }  // namespace harness::claims
