@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "harness/base/text.h"
@@ -195,6 +196,30 @@ std::string exponent_words(const Slope& exponent) {
   if (std::isfinite(exponent.half_width))
     words += " (" + number_text(exponent.low(), 3) + " to " + number_text(exponent.high(), 3) + ")";
   return words;
+}
+
+std::string title_of(const Plane& plane) {
+  return plane.sweep == "resolution"
+             ? scene_words(plane.scene) + " over resolution, " + percent(plane.limits.front()) +
+                   " strain"
+             : scene_words(plane.scene) + ", " + std::to_string(plane.vertices) +
+                   " vertices, over " + plane.sweep;
+}
+
+std::string span_of_errors(const std::vector<Plane>& planes) {
+  double first = std::numeric_limits<double>::infinity(), last = 0, duration = 0;
+  for (const Plane& plane : planes) {
+    for (const Cell& cell : plane.cells) {
+      if (cell.level != headline_error || !cell.first() || cell.known_until == 0) continue;
+      first = std::min(first, cell.known_until);
+      last = std::max(last, cell.known_until);
+      duration = std::max(duration, cell.first()->point.duration());
+    }
+  }
+  if (last == 0 || first > duration * (1 - 1e-9)) return "";
+  return "Errors of " + percent(headline_error) + " are known up to " +
+         (first < last ? number_text(first) + " or " : "") + number_text(last) + " s of " +
+         number_text(duration) + " s: later the scene's references differ too much. ";
 }
 
 }  // namespace harness::analysis
