@@ -100,20 +100,20 @@ void print_attribution(std::ostream& out, const Plane& plane) {
 // same step.
 void print_slack(std::ostream& out, const Runs& runs, const Plane& plane) {
   constexpr double loose = 0.01, tight = 0.001;
+  const auto kept_limit = [&plane](const Point& p, double limit) {
+    return p.ok() && p.strain_limit() == limit && p.scene() == plane.scene &&
+           p.vertices() == plane.vertices && p.sweep() == plane.sweep;
+  };
   std::string text;
   for (const auto& [name, own] :
        grouped(runs.points, [](const Point& p) { return p.contestant(); })) {
     if (!runs.roles.of(name).ranked()) continue;
     double error = unknown, kept = unknown;
     for (const Point& p : own) {
-      const auto tighter = std::ranges::find_if(own, [&p, &plane](const Point& q) {
-        return q.ok() && q.step() == p.step() && q.strain_limit() == tight &&
-               q.scene() == plane.scene && q.vertices() == plane.vertices &&
-               q.sweep() == plane.sweep;
-      });
+      const auto tighter = std::ranges::find_if(
+          own, [&](const Point& q) { return q.step() == p.step() && kept_limit(q, tight); });
       const double now = p.error_at(headline_error).distance;
-      if (p.ok() && p.strain_limit() == loose && p.scene() == plane.scene &&
-          p.vertices() == plane.vertices && tighter != own.end() && !(error < now)) {
+      if (kept_limit(p, loose) && tighter != own.end() && !(error < now)) {
         error = now;
         kept = tighter->error_at(headline_error).distance;
       }
