@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -101,9 +102,10 @@ struct Runs {
 template <class Items, class Key>
 auto grouped(const Items& items, Key key) {
   using Item = std::decay_t<decltype(*items.begin())>;
-  std::vector<std::pair<std::decay_t<decltype(key(*items.begin()))>, std::vector<Item>>> groups;
+  using Value = std::decay_t<std::invoke_result_t<Key, const Item&>>;
+  std::vector<std::pair<Value, std::vector<Item>>> groups;
   for (const Item& item : items) {
-    auto value = key(item);
+    Value value = std::invoke(key, item);
     auto group = groups.begin();
     while (group != groups.end() && group->first != value) ++group;
     if (group == groups.end()) group = groups.insert(group, {std::move(value), {}});

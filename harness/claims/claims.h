@@ -111,8 +111,6 @@ double parabola_sag(double length, double strain);
 // of the end that is higher and of the one that is lower.
 struct Slip {
   double least, most;
-  bool held() const { return most < 1; }
-  bool past() const { return least > 1; }
 };
 Slip slip_of(const Point& point);
 

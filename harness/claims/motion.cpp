@@ -214,9 +214,9 @@ Verdict garment_slip(const Points& points) {
       points, "garment", {0.1, 0.01},
       [](const std::vector<Point>& at, const char* words) {
         const Slip slides = slip_of(at[0]), stays = slip_of(at[1]);
-        return std::pair(stays.held() && slides.past(), std::string(words) + " " +
-                                                            percent(stays.most) + " at 1 %, " +
-                                                            percent(slides.least) + " at 10 %");
+        return std::pair(stays.most < 1 && slides.least > 1,
+                         std::string(words) + " " + percent(stays.most) + " at 1 %, " +
+                             percent(slides.least) + " at 10 %");
       },
       "rim below the waist, of the way to the hips: ", "; ");
 }

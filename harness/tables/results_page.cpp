@@ -105,8 +105,7 @@ void print_slack(std::ostream& out, const Runs& runs, const Plane& plane) {
            p.vertices() == plane.vertices && p.sweep() == plane.sweep;
   };
   std::string text;
-  for (const auto& [name, own] :
-       grouped(runs.points, [](const Point& p) { return p.contestant(); })) {
+  for (const auto& [name, own] : grouped(runs.points, &Point::contestant)) {
     if (!runs.roles.of(name).ranked()) continue;
     double error = unknown, kept = unknown;
     for (const Point& p : own) {
@@ -238,7 +237,7 @@ void print_scene(std::ostream& out, const NamedResult& result, const SceneTable&
   std::sort(limits.rbegin(), limits.rend());
   Table table{{"solver"}};
   for (const double limit : limits) table.head.push_back(percent(limit) + ", " + about.unit);
-  for (const auto& [name, own] : grouped(fastest, [](const Point& p) { return p.contestant(); })) {
+  for (const auto& [name, own] : grouped(fastest, &Point::contestant)) {
     table.rows.push_back({name});
     for (const double limit : limits) {
       const auto at = std::ranges::find(own, limit, &Point::strain_limit);
