@@ -102,8 +102,8 @@ Points::Points(const std::vector<json>& results) {
   }
 }
 
-std::vector<Point> Points::in(const std::string& scene, const std::string& sweep,
-                              std::optional<double> vertices) const {
+static std::vector<Point> points_in(const std::vector<Point>& all, const std::string& scene,
+                                    const std::string& sweep, std::optional<double> vertices = {}) {
   std::vector<Point> chosen;
   std::ranges::copy_if(all, std::back_inserter(chosen),
                        [&](const Point& p) { return p.scene() == scene && p.sweep() == sweep; });
@@ -118,7 +118,7 @@ Curve Points::best(const std::string& scene, const std::string& sweep,
                    const std::string& contestant, double level,
                    std::optional<double> vertices) const {
   std::map<std::pair<double, std::string>, std::vector<Point>> places;
-  for (const Point& p : in(scene, sweep, vertices)) {
+  for (const Point& p : points_in(all, scene, sweep, vertices)) {
     const Role role = roles.of(p.contestant());
     if (contestant.empty() ? role.competes && !role.again : role.row() == contestant)
       places[{sweep == "strain" ? p.strain_limit() : p.vertices(), p.contestant()}].push_back(p);
@@ -132,7 +132,7 @@ Curve Points::best(const std::string& scene, const std::string& sweep,
 
 Curve Points::best_at_errors(const std::string& scene, const std::string& contestant) const {
   Curve curve;
-  for (const Point& p : in(scene, "step")) {
+  for (const Point& p : points_in(all, scene, "step")) {
     if (roles.of(p.contestant()).row() != contestant || !p.ok() || !p.timed()) continue;
     for (const double level : {0.1, 0.03, 0.01, 0.003, 0.001, 0.0003, 0.0001}) {
       if (p.within_error(level)) keep_faster(curve, level, p);

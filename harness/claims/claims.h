@@ -66,15 +66,11 @@ struct Points {
   ContestantRoles roles;
   std::vector<const nlohmann::json*> matrix, freedom, same_frame;  // of stability sweeps
 
-  // Strain and step sweeps of several sizes may come together: unless one is named, the largest
-  // counts.
-  std::vector<Point> in(const std::string& scene, const std::string& sweep,
-                        std::optional<double> vertices = {}) const;
-
   // Over the axis of a sweep ("strain" or "resolution"): what one contestant, or "" the fastest of
   // all, answers within a level of error (analysis/plane.h), with tuned or untuned settings. One
   // tuned setting serves all places of a scene; where the method's own default is faster, that
-  // counts, so that tuning harms nobody.
+  // counts, so that tuning harms nobody. Of strain sweeps of several sizes the largest counts,
+  // unless one is named.
   Curve best(const std::string& scene, const std::string& sweep, const std::string& contestant,
              double level = any_motion, std::optional<double> vertices = {}) const;
   // Over error levels: the fastest point of step sweeps within each, at any step and limit, with

@@ -169,9 +169,6 @@ struct PairedPoint {
 // Runs one process on one point; what `bench point` printed, all runs among its samples.
 using RunOne = std::function<ComparedPoint(Side, const PairedPoint&)>;
 
-// Runs in one process, so that a process measures for at least `least` seconds. seconds: one run.
-int samples_for(double seconds, double least);
-
 // `pairs` rounds over all points; the sides take turns in coming first (ABBA). A point that has
 // failed on either side is left alone from then on.
 void run_pairs(const std::vector<PairedPoint*>& points, int pairs, const RunOne& run);

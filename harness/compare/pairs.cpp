@@ -71,11 +71,6 @@ PointChange judge_again(const PairedPoint& point, Change first, const Gate& gate
 
 }  // namespace
 
-int samples_for(double seconds, double least) {
-  constexpr double most = 1000;
-  return static_cast<int>(std::clamp(std::ceil(least / std::max(seconds, 1e-9)), 1.0, most));
-}
-
 void run_pairs(const std::vector<PairedPoint*>& points, int pairs, const RunOne& run) {
   for (int pair = 0; pair < pairs; ++pair) {
     for (PairedPoint* point : points) {
