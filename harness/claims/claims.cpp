@@ -32,10 +32,6 @@ Answer above(const Slope& slope, double threshold) {
   return slope.high() < threshold ? Answer::no : Answer::open;
 }
 
-Answer below(const Slope& slope, double threshold) {
-  return above(Slope{-slope.value, slope.half_width, slope.points}, -threshold);
-}
-
 Answer all_of(const std::vector<Answer>& answers) {
   for (const Answer one : {Answer::no, Answer::open}) {
     if (std::ranges::count(answers, one) > 0) return one;
@@ -139,37 +135,6 @@ Curve Points::best_at_errors(const std::string& scene, const std::string& contes
     }
   }
   return curve;
-}
-
-Slope slope_of(const Curve& curve) {
-  std::vector<double> x, y;
-  for (const auto& [at, point] : curve) {
-    x.push_back(at);
-    y.push_back(point.seconds());
-  }
-  return log_log_slope(x, y);
-}
-
-Slope slope_of_ratio(const Curve& a, const Curve& b) {
-  std::vector<double> x, y, half_widths;
-  for (const auto& [place, point] : a) {
-    const auto other = at(b, place);
-    if (!other) continue;
-    const Ratio over = ratio(point, *other);
-    x.push_back(place);
-    y.push_back(over.value);
-    half_widths.push_back(over.known() ? 0.5 * std::log(over.high / over.low) : 0);
-  }
-  Slope slope = log_log_slope(x, y);
-  double mean = 0, squares = 0, spread = 0;
-  for (const double at : x) mean += std::log(at) / static_cast<double>(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double distance = std::log(x[i]) - mean;
-    squares += distance * distance;
-    spread += distance * distance * half_widths[i] * half_widths[i];
-  }
-  if (squares > 0) slope.half_width = std::max(slope.half_width, std::sqrt(spread) / squares);
-  return slope;
 }
 
 std::optional<Point> at(const Curve& curve, double x) {

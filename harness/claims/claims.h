@@ -37,7 +37,6 @@ enum class Answer { yes, no, open };
 inline Answer yes_if(bool so) { return so ? Answer::yes : Answer::no; }
 Answer above(const Ratio& ratio, double threshold);
 Answer above(const Slope& slope, double threshold);
-Answer below(const Slope& slope, double threshold);
 Answer all_of(const std::vector<Answer>& answers);  // no if one is no
 
 std::string verdict_of(Answer answer);
@@ -73,16 +72,11 @@ struct Points {
   // unless one is named.
   Curve best(const std::string& scene, const std::string& sweep, const std::string& contestant,
              double level = any_motion, std::optional<double> vertices = {}) const;
-  // Over error levels: the fastest point of step sweeps within each, at any step and limit, with
-  // tuned or untuned settings.
+  // Over error levels: the fastest point of step sweeps of the largest size within each, at any
+  // step and limit, with tuned or untuned settings.
   Curve best_at_errors(const std::string& scene, const std::string& contestant) const;
 };
 
-// Slope of seconds over the axis, both logarithmic.
-Slope slope_of(const Curve& curve);
-// Ratio of a's seconds to b's, where both have a point: its interval is the wider one of what the
-// scatter about the line and what the ratios' own intervals give.
-Slope slope_of_ratio(const Curve& a, const Curve& b);
 std::optional<Point> at(const Curve& curve, double x);
 std::vector<std::string> ids_of(const std::vector<Curve>& curves);
 

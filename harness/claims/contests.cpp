@@ -17,6 +17,44 @@ namespace {
 std::string count_of(double n) { return text(n, 6); }
 std::string vertices_of(double n) { return count_of(n) + " vertices"; }
 
+Answer below(const Slope& slope, double threshold) {
+  return above(Slope{-slope.value, slope.half_width, slope.points}, -threshold);
+}
+
+// Slope of seconds over the axis, both logarithmic.
+Slope slope_of(const Curve& curve) {
+  std::vector<double> x, y;
+  for (const auto& [at, point] : curve) {
+    x.push_back(at);
+    y.push_back(point.seconds());
+  }
+  return log_log_slope(x, y);
+}
+
+// Ratio of a's seconds to b's, where both have a point: its interval is the wider one of what the
+// scatter about the line and what the ratios' own intervals give.
+Slope slope_of_ratio(const Curve& a, const Curve& b) {
+  std::vector<double> x, y, half_widths;
+  for (const auto& [place, point] : a) {
+    const auto other = at(b, place);
+    if (!other) continue;
+    const Ratio over = ratio(point, *other);
+    x.push_back(place);
+    y.push_back(over.value);
+    half_widths.push_back(over.known() ? 0.5 * std::log(over.high / over.low) : 0);
+  }
+  Slope slope = log_log_slope(x, y);
+  double mean = 0, squares = 0, spread = 0;
+  for (const double at : x) mean += std::log(at) / static_cast<double>(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double distance = std::log(x[i]) - mean;
+    squares += distance * distance;
+    spread += distance * distance * half_widths[i] * half_widths[i];
+  }
+  if (squares > 0) slope.half_width = std::max(slope.half_width, std::sqrt(spread) / squares);
+  return slope;
+}
+
 // How the ratio of times changes along the axis, and the ratio at both ends.
 Verdict growth(const Curve& springs, const Curve& fast,
                Answer (*fast_is_better)(const Slope&, double), std::string (*place)(double)) {
