@@ -156,10 +156,7 @@ class KktSystem final : public KktSolver {
       std::copy(matrix_.begin(), matrix_.end(), ldlt_->values());
       for (int i = multiplier_offset_; i < size_; ++i)
         ldlt_->values()[diagonal_[i]] = -regularization;
-      ++work.factorizations;
-      if (!ldlt_->factor()) return factor_umfpack(work);
-      work.factor_nonzeros = ldlt_->factor_nonzeros();
-      work.factor_flops = ldlt_->factor_flops();
+      if (!factor_counted(*ldlt_, work)) return factor_umfpack(work);
       if (convex_ || ldlt_->negative_pivots() == edges_.count()) return true;
     }
   }
@@ -182,11 +179,7 @@ class KktSystem final : public KktSolver {
     for (std::size_t i = 0; i < full_from_upper_.size(); ++i) {
       lu_->values()[i] = matrix_[full_from_upper_[i]];
     }
-    ++work.factorizations;
-    if (!lu_->factor()) return false;
-    work.factor_nonzeros = lu_->factor_nonzeros();
-    work.factor_flops = lu_->factor_flops();
-    return true;
+    return factor_counted(*lu_, work);
   }
 
   void residual() {  // residual_ = rhs_ - K solution_
