@@ -172,10 +172,9 @@ int run_suite(const SweepCommand& options, const Words& typed) {
 
 // ---- Hard cases: they are in the program, not in a suite ----
 
-// cases must outlive it.
-StabilityPlan plan_of(const SweepCommand& options, const std::vector<HardCase>& cases) {
-  StabilityPlan plan = plan_stability(
-      cases, {solver_pattern(options.solver), pattern_of("--case", options.hard_case), {}});
+StabilityPlan plan_of(const SweepCommand& options) {
+  StabilityPlan plan = plan_stability(options.profile, solver_pattern(options.solver),
+                                      pattern_of("--case", options.hard_case));
   if (!options.shard.empty()) plan.keep(parse_shard(options.shard));
   return plan;
 }
@@ -195,14 +194,12 @@ void add_cells_of(const nlohmann::json& result, Journal& journal) {
 
 int run_hard_cases(const SweepCommand& options, const Words& typed) {
   check_known("profile", options.profile, profiles());
-  const HardCaseValues values = hard_case_values(options.profile);
-  const std::vector<HardCase> cases = hard_cases(values);
-  const StabilityPlan plan = plan_of(options, cases);
+  const StabilityPlan plan = plan_of(options);
   if (options.dry_run) return print_plan(plan);
   nlohmann::json context = machine_context();
   context["selection"] = {{"solver", options.solver},
                           {"case", options.hard_case},
-                          {"values", values},
+                          {"values", hard_case_values(options.profile)},
                           {"seed", options.seed},
                           {"shard", options.shard}};
   const auto run = [&](const std::string&, Journal& journal, const nlohmann::json&) -> Finished {

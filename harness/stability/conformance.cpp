@@ -427,12 +427,8 @@ Findings all_hard_cases(const Examinee& solver) {
   const char* check = "hard cases";
   if (!solver.options.hard_cases) return {not_applicable(check, "left out")};
   if (!solver.backend.contestant) return {not_applicable(check, "for contestants only")};
-  const auto cases = hard_cases(hard_case_values("quick"));
-  StabilityFilters filters;
-  filters.solver = Pattern("solver", solver.backend.name);
-  filters.but_case = Pattern("case", "^(largest step|same frame)");
-  const StabilityOutcome outcome =
-      run_stability(plan_stability(cases, filters), solver.options.seed, {});
+  const StabilityPlan plan{{solver.backend.name}, hard_cases(hard_case_values("quick"))};
+  const StabilityOutcome outcome = run_stability(plan, solver.options.seed, {});
   int survived = 0, refused = 0, slow = 0, known = 0, unexpected = 0;
   std::string advice;
   for (const StabilityCell& cell : outcome.cells) {
