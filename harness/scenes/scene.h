@@ -87,5 +87,7 @@ std::vector<std::string> scene_kinds();  // of all scenes, each once
 // The scene's parameters with `given` put in. Throws UsageError, naming the parameter, for unknown
 // or impossible ones.
 SceneParameters complete_parameters(const SceneType& type, const SceneParameters& given);
+// A scene that there is, with some of its parameters given.
+Scene built_scene(std::string_view name, const SceneParameters& given);
 
 }  // namespace harness

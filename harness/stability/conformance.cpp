@@ -120,7 +120,7 @@ Case drape(const inextensible::Backend& solver, double step, int steps) {
   SceneParameters given{{"n", 9}};
   if (!solver.takes_shear) given["shear"] = 0;
   if (!solver.takes_collider) given["radius"] = 0;
-  return case_of("drape of 9 x 9", cases::scene_of("drape", given), step, steps);
+  return case_of("drape of 9 x 9", built_scene("drape", given), step, steps);
 }
 
 bool keeps_a_limit(const inextensible::Backend& solver) {
@@ -175,7 +175,7 @@ struct Runs {
 
 Findings ordinary_runs(const Examinee& solver) {
   Runs all;
-  all.take(solver, case_of("chain of 20", cases::scene_of("chain", {{"n", 20}}), 1.0 / 400, 80));
+  all.take(solver, case_of("chain of 20", built_scene("chain", {{"n", 20}}), 1.0 / 400, 80));
   all.take(solver, drape(solver.backend, 1.0 / 400, 60));
   for (std::uint64_t seed = 1; seed <= 4; ++seed)
     all.take(solver, net(seed, 5, 2, 2, 0.005, 10, 0.005));
@@ -271,7 +271,7 @@ Findings momentum(const Examinee& solver) {
 
 Findings refusal(const Examinee& solver) {
   const Case torn = case_of("a row between pins 20 % farther apart than it is long",
-                            cases::scene_of("taut_row", {{"stretch", 1.2}, {"n", 12}}), 0.01, 1);
+                            built_scene("taut_row", {{"stretch", 1.2}, {"n", 12}}), 0.01, 1);
   Case overflow = net(1, 4, 1, 2, 0.01, 1, 0.005);
   overflow.name = "speeds of 1e300 m/s";
   overflow.scene.start.v *= 1e300;
@@ -380,7 +380,7 @@ Findings consistency(const Examinee& solver) {
   // for what does not vanish with h; between the two, on a logarithmic scale.
   constexpr double not_vanishing = 0.68;
   const Case c =
-      case_of("chain of 8", cases::scene_of("chain", {{"n", links + 1}}), 0.32 / 80, 80, 1e-6);
+      case_of("chain of 8", built_scene("chain", {{"n", links + 1}}), 0.32 / 80, 80, 1e-6);
   // How far a step is iterated is a tolerance, not a part of the formula: it must not be what
   // shows.
   inextensible::Settings settings;

@@ -160,8 +160,8 @@ json known_json(const StabilityOutcome& outcome) {
       }
       list.push_back({{"case", hard_case},
                       {"solver", known.solver},
-                      {"at_fixed_step", to_string(known.fixed)},
-                      {"outcome", to_string(known.outcome)},
+                      {"at_fixed_step", known.fixed},
+                      {"outcome", known.outcome},
                       {"reason", known.reason},
                       {"mends", known.remedy},
                       {"seen", seen}});
@@ -184,9 +184,9 @@ json stability_document(json context, const StabilityOutcome& outcome, std::uint
                 {"case", cell.hard_case->name},
                 {"what", cell.hard_case->what},
                 {"solver", cell.solver},
-                {"expected_at_fixed_step", to_string(cell.expectation.outcome)},
+                {"expected_at_fixed_step", cell.expectation.outcome},
                 {"why", cell.expectation.why},
-                {"admitted_beside", other ? json(to_string(other->outcome)) : json()},
+                {"admitted_beside", other ? json(other->outcome) : json()},
                 {"why_admitted", other ? json(other->why) : json()},
                 {"as_expected", cell.expected},
                 {"known_difference", cell.known != nullptr}});
