@@ -137,13 +137,11 @@ std::unique_ptr<Stepper> stepper_for(const Examinee& solver, const Case& c,
   }
 }
 
-bool same_bits(const Positions& a, const Positions& b) {
-  return a.cols() == b.cols() &&
-         std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
-}
-
 bool same_bits(const State& a, const State& b) {
-  return same_bits(a.x, b.x) && same_bits(a.v, b.v) && a.time == b.time;
+  const auto same = [](const Positions& p, const Positions& q) {
+    return p.cols() == q.cols() && std::memcmp(p.data(), q.data(), sizeof(double) * p.size()) == 0;
+  };
+  return same(a.x, b.x) && same(a.v, b.v) && a.time == b.time;
 }
 
 // ---- Pins, limit and counters of ordinary scenes at ordinary steps ----
