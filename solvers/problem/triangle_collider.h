@@ -36,6 +36,7 @@ class TriangleCollider final : public Collider {
   bool plane_at(const Eigen::Vector3d& p, ContactPlane& plane, WorkCounters& work) const override;
   double friction() const override { return friction_; }
   int triangles() const override { return static_cast<int>(mesh_.triangles.size()); }
+  const TriangleMesh& mesh() const { return mesh_; }
 
   struct Nearest {
     Eigen::Vector3d point;   // on the mesh, m
