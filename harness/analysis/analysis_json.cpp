@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "harness/analysis/findings.h"
+#include "harness/base/table.h"
 #include "harness/points/point_json.h"
 
 namespace harness::analysis {
@@ -52,6 +53,17 @@ static void to_json(json& to, const Cell& cell) {
   }
 }
 
+// Rows that a figure shows before all others: methods that are first in a cell, then the paper's
+// six, whether they have an answer or not.
+static std::vector<std::string> leaders_of(const Plane& plane) {
+  std::vector<std::string> rows;
+  for (const Cell& cell : plane.cells) {
+    if (cell.first()) rows.push_back(cell.first()->row);
+  }
+  for (const PaperMethod& method : all_paper_methods) rows.emplace_back(method.name);
+  return in_order(rows, std::identity());
+}
+
 static void to_json(json& to, const Plane& plane) {
   to = {{"scene", plane.scene},
         {"sweep", plane.sweep},
@@ -60,7 +72,7 @@ static void to_json(json& to, const Plane& plane) {
         {"vertices", plane.vertices},
         {"strain_limits", plane.limits},
         {"error_levels", plane.levels},  // any motion, which is infinite, is written as null
-        {"leaders", plane.leaders()},
+        {"leaders", leaders_of(plane)},
         {"cells", plane.cells}};
 }
 

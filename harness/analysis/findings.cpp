@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "harness/base/text.h"
@@ -28,6 +29,17 @@ std::string joined(const std::vector<const Entry*>& entries) {
   }
   const std::size_t rest = entries.size() - named;
   return words + (rest > 0 ? " and " + std::to_string(rest) + " more" : "");
+}
+
+// Those that count and are too close to the first to tell apart; the first is the first of them.
+// Where samples are too few for an interval, it is not known, and they are not among them.
+std::vector<const Entry*> equals_in(const Cell& cell) {
+  std::vector<const Entry*> list;
+  for (const Entry& entry : cell.entries) {
+    const auto lead = cell.lead_over(&entry);
+    if (entry.counts && (!lead || (lead->known() && !lead->above(1)))) list.push_back(&entry);
+  }
+  return list;
 }
 
 std::string leader_words(const Cell& cell, const std::vector<const Entry*>& equals) {
@@ -87,22 +99,6 @@ const Cell* second_of(const Plane& plane, const Cell& headline) {
   return any && any->first()->row != headline.first()->row ? any : nullptr;
 }
 
-Finding finding_of(const Plane& plane) {
-  Finding finding{plane.scene,
-                  plane.sweep,
-                  plane.vertices,
-                  scene_words(plane.scene) + " of " + std::to_string(plane.vertices) + " vertices",
-                  {}};
-  const double limit = limit_next_to(plane.limits, headline_limit);
-  const Cell* headline = headline_of(plane, limit);
-  finding.sentences.push_back(sentence_of(headline ? *headline : plane.cell(limit, any_motion)));
-  if (headline) {
-    if (const Cell* second = second_of(plane, *headline))
-      finding.sentences.push_back(sentence_of(*second));
-  }
-  return finding;
-}
-
 }  // namespace
 
 std::string sentence_of(const Cell& cell) {
@@ -112,7 +108,7 @@ std::string sentence_of(const Cell& cell) {
                                 : "motion error at most " + percent(cell.level));
   const Entry* first = cell.first();
   if (!first) return place + ", there is no answer: " + cell.empty_because + ".";
-  const auto equals = cell.equals();
+  const auto equals = equals_in(cell);
   const std::string error = std::isfinite(first->error)
                                 ? " and an error of " + number_text(100 * first->error, 2) + " %"
                                 : "";
@@ -148,7 +144,17 @@ std::vector<Finding> findings_of(const std::vector<Plane>& planes) {
              other.vertices > plane.vertices;
     });
     if (plane.sweep == "resolution" && !largest) continue;
-    Finding finding = finding_of(plane);
+    Finding finding{
+        plane.scene,
+        plane.sweep,
+        plane.vertices,
+        scene_words(plane.scene) + " of " + std::to_string(plane.vertices) + " vertices",
+        {}};
+    const double limit = limit_next_to(plane.limits, headline_limit);
+    const Cell* headline = headline_of(plane, limit);
+    finding.sentences.push_back(sentence_of(headline ? *headline : plane.cell(limit, any_motion)));
+    if (const Cell* second = headline ? second_of(plane, *headline) : nullptr)
+      finding.sentences.push_back(sentence_of(*second));
     for (const Growth& growth : growths) {
       if (plane.sweep != "resolution" || growth.scene != plane.scene) continue;
       std::string sentence = sentence_of(growth);
@@ -195,6 +201,30 @@ std::string exponent_words(const Slope& exponent) {
   if (std::isfinite(exponent.half_width))
     words += " (" + number_text(exponent.low(), 3) + " to " + number_text(exponent.high(), 3) + ")";
   return words;
+}
+
+std::string title_of(const Plane& plane) {
+  return plane.sweep == "resolution"
+             ? scene_words(plane.scene) + " over resolution, " + percent(plane.limits.front()) +
+                   " strain"
+             : scene_words(plane.scene) + ", " + std::to_string(plane.vertices) +
+                   " vertices, over " + plane.sweep;
+}
+
+std::string span_of_errors(const std::vector<Plane>& planes) {
+  double first = std::numeric_limits<double>::infinity(), last = 0, duration = 0;
+  for (const Plane& plane : planes) {
+    for (const Cell& cell : plane.cells) {
+      if (cell.level != headline_error || !cell.first() || cell.known_until == 0) continue;
+      first = std::min(first, cell.known_until);
+      last = std::max(last, cell.known_until);
+      duration = std::max(duration, cell.first()->point.duration());
+    }
+  }
+  if (last == 0 || first > duration * (1 - 1e-9)) return "";
+  return "Errors of " + percent(headline_error) + " are known up to " +
+         (first < last ? number_text(first) + " or " : "") + number_text(last) + " s of " +
+         number_text(duration) + " s: later the scene's references differ too much. ";
 }
 
 }  // namespace harness::analysis

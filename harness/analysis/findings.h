@@ -51,6 +51,13 @@ std::string sentence_of(const Growth& growth);
 
 std::vector<Finding> findings_of(const std::vector<Plane>& planes);
 
+// "chain, 80 vertices, over strain". Planes of one title are one table: those of a resolution sweep
+// are its rows.
+std::string title_of(const Plane& plane);
+// A sentence on the time until which errors at the headline's level count. Empty: they are not
+// known.
+std::string span_of_errors(const std::vector<Plane>& planes);
+
 // As JSON, schema inextensible-analysis/1: for `bench show --json` and for figures.
 nlohmann::json analysis_of(const Runs& runs);
 

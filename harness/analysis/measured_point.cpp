@@ -73,11 +73,6 @@ Role ContestantRoles::of(const std::string& contestant) const {
   return place != known_.end() ? place->second : Role{contestant, contestant, contestant};
 }
 
-std::string ContestantRoles::at_any_settings(const std::string& contestant) const {
-  const Role role = of(contestant);
-  return role.unranked && !role.again ? role.solver : contestant;
-}
-
 void ContestantRoles::add(const ContestantRoles& other) {
   known_.insert(other.known_.begin(), other.known_.end());
 }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -71,6 +72,9 @@ struct Role {
   bool unranked = false;  // shown beside its tuned self, not ranked
   bool again = false;     // the second of an A/A pair
   bool ranked() const { return competes && !unranked && !again; }
+  // Whose row its points stand in where any settings may be chosen: an unranked one's in its
+  // solver's, but for the second of an A/A pair, which would give the first a second chance.
+  const std::string& row() const { return unranked && !again ? solver : name; }
 };
 
 // One file's legend and noise; contestants that it does not name are their own family.
@@ -79,9 +83,6 @@ class ContestantRoles {
   ContestantRoles() = default;
   explicit ContestantRoles(const nlohmann::json& document);
   Role of(const std::string& contestant) const;
-  // Whose row a contestant's points stand in where any settings may be chosen: an unranked one's in
-  // its solver's, but for the second of an A/A pair, which would give the first a second chance.
-  std::string at_any_settings(const std::string& contestant) const;
   void add(const ContestantRoles& other);  // what is known already stays
 
  private:
@@ -101,9 +102,10 @@ struct Runs {
 template <class Items, class Key>
 auto grouped(const Items& items, Key key) {
   using Item = std::decay_t<decltype(*items.begin())>;
-  std::vector<std::pair<std::decay_t<decltype(key(*items.begin()))>, std::vector<Item>>> groups;
+  using Value = std::decay_t<std::invoke_result_t<Key, const Item&>>;
+  std::vector<std::pair<Value, std::vector<Item>>> groups;
   for (const Item& item : items) {
-    auto value = key(item);
+    Value value = std::invoke(key, item);
     auto group = groups.begin();
     while (group != groups.end() && group->first != value) ++group;
     if (group == groups.end()) group = groups.insert(group, {std::move(value), {}});

@@ -7,8 +7,6 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "harness/base/table.h"
-#include "harness/base/text.h"
 #include "harness/points/suite.h"
 
 namespace harness::analysis {
@@ -60,10 +58,10 @@ Cell cell_of(const std::vector<Point>& here, double limit, double level,
     if (error.samples > 0 && std::isfinite(error.until))
       cell.known_until = std::max(cell.known_until, error.until);
   }
-  for (const auto& [name, own] : grouped(here, [](const Point& p) { return p.contestant(); })) {
+  for (const auto& [name, own] : grouped(here, &Point::contestant)) {
+    const Role role = roles.of(name);
     if (const auto entry = fastest_of(own, level))
-      cell.entries.push_back({roles.of(name), roles.at_any_settings(name), false, *entry,
-                              entry->error_at(level).distance});
+      cell.entries.push_back({role, role.row(), false, *entry, entry->error_at(level).distance});
   }
   rank(cell.entries);
   if (!cell.first()) cell.empty_because = why_empty(here, level, cell.known_until);
@@ -96,7 +94,7 @@ Plane plane_of(const std::vector<Point>& points, const Runs& runs) {
   const PointSpec& one = points.front().spec();
   Plane plane{one.scene,    one.sweep, one.scene_parameters, one.resolution,
               one.vertices, {},        runs.levels,          {}};
-  auto by_limit = grouped(points, [](const Point& p) { return p.strain_limit(); });
+  auto by_limit = grouped(points, &Point::strain_limit);
   std::ranges::sort(by_limit, std::greater(), [](const auto& group) { return group.first; });
   for (const auto& [limit, here] : by_limit) {
     plane.limits.push_back(limit);
@@ -133,7 +131,7 @@ BudgetTable table_of(std::vector<Point> points, const ContestantRoles& roles,
                      const std::vector<double>& budgets) {
   const PointSpec& one = points.front().spec();
   BudgetTable table{one.scene, one.resolution, one.vertices, budgets, {}};
-  const auto row_of = [&](const Point& p) { return roles.at_any_settings(p.contestant()); };
+  const auto row_of = [&](const Point& p) { return roles.of(p.contestant()).row(); };
   for (auto& [row, own] : grouped(points, row_of)) {
     Budgeted line{row, {}, {}};
     std::ranges::stable_sort(own, {}, frame_seconds);
@@ -201,15 +199,6 @@ const Entry* Cell::rival(Rival which) const {
   return place == entries.end() ? nullptr : &*place;
 }
 
-std::vector<const Entry*> Cell::equals() const {
-  std::vector<const Entry*> list;
-  for (const Entry& entry : entries) {
-    const auto lead = lead_over(&entry);
-    if (entry.counts && (!lead || (lead->known() && !lead->above(1)))) list.push_back(&entry);
-  }
-  return list;
-}
-
 bool Cell::clear() const {
   return counting(1) && std::ranges::all_of(entries, [&](const Entry& entry) {
            const auto lead = lead_over(&entry);
@@ -228,15 +217,6 @@ const Cell& Plane::cell(double limit, double level) const {
     if (cell.strain_limit == limit && cell.level == level) return cell;
   }
   throw std::out_of_range("no such cell");
-}
-
-std::vector<std::string> Plane::leaders() const {
-  std::vector<std::string> rows;
-  for (const Cell& cell : cells) {
-    if (cell.first()) rows.push_back(cell.first()->row);
-  }
-  for (const PaperMethod& method : all_paper_methods) rows.emplace_back(method.name);
-  return in_order(rows, [](const std::string& row) { return row; });
 }
 
 std::vector<Plane> planes_of(const Runs& runs, bool adaptive) {

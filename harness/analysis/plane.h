@@ -53,9 +53,6 @@ struct Cell {
   const Entry* first() const { return counting(0); }
   const Entry* counting(std::size_t place) const;  // 0: the fastest of those that count
   const Entry* rival(Rival which) const;
-  // Those that count and are too close to the first to tell apart; the first is the first of them.
-  // Where samples are too few for an interval, it is not known, and they are not among them.
-  std::vector<const Entry*> equals() const;
   // Whether the first has rivals, and is faster than each of them beyond the noise.
   bool clear() const;
   // Times over the first's.
@@ -72,9 +69,6 @@ struct Plane {
   std::vector<Cell> cells;     // by limit, then by level
 
   const Cell& cell(double limit, double level) const;
-  // Rows that a figure shows before all others: methods that are first in a cell, then the paper's
-  // six, whether they have an answer or not.
-  std::vector<std::string> leaders() const;
 };
 
 // In the order of runs; of those with a step controller, or of those without.

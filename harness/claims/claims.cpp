@@ -1,11 +1,176 @@
 #include "harness/claims/claims.h"
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <set>
+#include <tuple>
 
+#include "harness/analysis/plane.h"
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/json.h"
+#include "harness/base/text.h"
 #include "harness/points/result_file.h"
+
+namespace harness::claims {
+
+using nlohmann::json;
+
+static void keep_faster(Curve& curve, double x, const Point& point) {
+  const auto [place, added] = curve.try_emplace(x, point);
+  if (!added && point.seconds() < place->second.seconds()) place->second = point;
+}
+
+Answer above(const Ratio& ratio, double threshold) {
+  if (ratio.above(threshold)) return Answer::yes;
+  return ratio.below(threshold) ? Answer::no : Answer::open;
+}
+
+Answer above(const Slope& slope, double threshold) {
+  if (slope.low() > threshold) return Answer::yes;
+  return slope.high() < threshold ? Answer::no : Answer::open;
+}
+
+Answer all_of(const std::vector<Answer>& answers) {
+  for (const Answer one : {Answer::no, Answer::open}) {
+    if (std::ranges::count(answers, one) > 0) return one;
+  }
+  return Answer::yes;
+}
+
+std::string verdict_of(Answer answer) {
+  return answer == Answer::yes ? reproduced : answer == Answer::no ? not_reproduced : undecided;
+}
+
+std::string verdict_of(Answer one, Answer other) {
+  return verdict_of_all({verdict_of(one), verdict_of(other)});
+}
+
+std::string verdict_of_counts(int yes, int no, int all) {
+  if (yes == all) return reproduced;
+  if (2 * no > all) return not_reproduced;
+  return no > 0 && 2 * yes > all ? changed : undecided;
+}
+
+std::string verdict_of_all(const std::vector<std::string>& verdicts) {
+  std::set<std::string> different(verdicts.begin(), verdicts.end());
+  different.erase(not_measured);
+  if (different.empty()) return not_measured;
+  if (different.contains(undecided)) return undecided;
+  return different.size() == 1 ? *different.begin() : changed;
+}
+
+std::string text(double value, int digits) { return number_text(value, digits); }
+
+std::string text(const Slope& slope) {
+  return text(slope.value, 2) +
+         (std::isfinite(slope.half_width) ? " ± " + text(slope.half_width, 1) : "");
+}
+
+void append(std::string& list, const std::string& more, const char* separator) {
+  list += (list.empty() ? "" : separator) + more;
+}
+
+Points::Points(const std::vector<json>& results) {
+  // Ids do not name the order of passes.
+  using Key = std::tuple<std::string, std::string, std::string, bool>;
+  std::set<Key> seen;
+  for (const json& result : results) {
+    roles.add(ContestantRoles(result));
+    if (result.value("schema", "") == "inextensible-stability/1") {
+      for (const json& cell : result.at("matrix")) matrix.push_back(&cell);
+      for (const json& mesh : result.at("degrees_of_freedom")) freedom.push_back(&mesh);
+      for (const json& frame : result.at("same_frame")) same_frame.push_back(&frame);
+      continue;
+    }
+    const Runs runs(result);
+    std::set<Key> here;
+    for (const Point& point : runs.points) {
+      if (point.spec().adaptive) continue;
+      const Key key(point.id(), point.contestant(), point.sweep(), point.collides_last());
+      repeated = repeated || seen.contains(key);
+      if (seen.contains(key)) continue;
+      here.insert(key);
+      all.push_back(point);
+    }
+    seen.merge(here);
+  }
+}
+
+static std::vector<Point> points_in(const std::vector<Point>& all, const std::string& scene,
+                                    const std::string& sweep, std::optional<double> vertices = {}) {
+  std::vector<Point> chosen;
+  std::ranges::copy_if(all, std::back_inserter(chosen),
+                       [&](const Point& p) { return p.scene() == scene && p.sweep() == sweep; });
+  if (sweep == "resolution" || chosen.empty()) return chosen;
+  const double size =
+      vertices ? *vertices : std::ranges::max(chosen, {}, &Point::vertices).vertices();
+  std::erase_if(chosen, [size](const Point& p) { return p.vertices() != size; });
+  return chosen;
+}
+
+Curve Points::best(const std::string& scene, const std::string& sweep,
+                   const std::string& contestant, double level,
+                   std::optional<double> vertices) const {
+  std::map<std::pair<double, std::string>, std::vector<Point>> places;
+  for (const Point& p : points_in(all, scene, sweep, vertices)) {
+    const Role role = roles.of(p.contestant());
+    if (contestant.empty() ? role.competes && !role.again : role.row() == contestant)
+      places[{sweep == "strain" ? p.strain_limit() : p.vertices(), p.contestant()}].push_back(p);
+  }
+  Curve curve;
+  for (const auto& [place, here] : places) {
+    if (const auto answer = fastest_of(here, level)) keep_faster(curve, place.first, *answer);
+  }
+  return curve;
+}
+
+Curve Points::best_at_errors(const std::string& scene, const std::string& contestant) const {
+  Curve curve;
+  for (const Point& p : points_in(all, scene, "step")) {
+    if (roles.of(p.contestant()).row() != contestant || !p.ok() || !p.timed()) continue;
+    for (const double level : {0.1, 0.03, 0.01, 0.003, 0.001, 0.0003, 0.0001}) {
+      if (p.within_error(level)) keep_faster(curve, level, p);
+    }
+  }
+  return curve;
+}
+
+std::optional<Point> at(const Curve& curve, double x) {
+  for (const auto& [key, point] : curve) {
+    if (std::abs(key / x - 1) < 1e-9) return point;
+  }
+  return {};
+}
+
+std::vector<std::string> ids_of(const std::vector<Curve>& curves) {
+  std::vector<std::string> ids;
+  for (const Curve& curve : curves) {
+    for (const auto& [at, point] : curve) ids.push_back(point.id());
+  }
+  return ids;
+}
+
+Verdict at_levels(const std::function<Verdict(double level)>& judge, const Ways& more) {
+  Ways ways{{"at an error of at most 2 %", judge(headline_error)},
+            {"at any motion", judge(any_motion)}};
+  ways.insert(ways.end(), more.begin(), more.end());
+  Verdict all{ways.front().second.verdict, "", {}};
+  bool any = false;
+  for (const auto& [words, way] : ways) {
+    any = any || way.verdict != not_measured;
+    append(all.measured,
+           words + ": " + way.verdict + (way.measured.empty() ? "" : ", " + way.measured), "; ");
+    for (const std::string& id : way.points) {
+      if (std::ranges::count(all.points, id) == 0) all.points.push_back(id);
+    }
+  }
+  if (!any) all.measured.clear();
+  return all;
+}
+
+}  // namespace harness::claims
 
 namespace harness {
 namespace {

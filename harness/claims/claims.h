@@ -37,7 +37,6 @@ enum class Answer { yes, no, open };
 inline Answer yes_if(bool so) { return so ? Answer::yes : Answer::no; }
 Answer above(const Ratio& ratio, double threshold);
 Answer above(const Slope& slope, double threshold);
-Answer below(const Slope& slope, double threshold);
 Answer all_of(const std::vector<Answer>& answers);  // no if one is no
 
 std::string verdict_of(Answer answer);
@@ -66,35 +65,25 @@ struct Points {
   ContestantRoles roles;
   std::vector<const nlohmann::json*> matrix, freedom, same_frame;  // of stability sweeps
 
-  // Strain and step sweeps of several sizes may come together: unless one is named, the largest
-  // counts.
-  std::vector<Point> in(const std::string& scene, const std::string& sweep,
-                        std::optional<double> vertices = {}) const;
-
   // Over the axis of a sweep ("strain" or "resolution"): what one contestant, or "" the fastest of
   // all, answers within a level of error (analysis/plane.h), with tuned or untuned settings. One
   // tuned setting serves all places of a scene; where the method's own default is faster, that
-  // counts, so that tuning harms nobody.
+  // counts, so that tuning harms nobody. Of strain sweeps of several sizes the largest counts,
+  // unless one is named.
   Curve best(const std::string& scene, const std::string& sweep, const std::string& contestant,
              double level = any_motion, std::optional<double> vertices = {}) const;
-  // Over error levels: the fastest point of step sweeps within each, at any step and limit, with
-  // tuned or untuned settings.
+  // Over error levels: the fastest point of step sweeps of the largest size within each, at any
+  // step and limit, with tuned or untuned settings.
   Curve best_at_errors(const std::string& scene, const std::string& contestant) const;
 };
 
-// Slope of seconds over the axis, both logarithmic.
-Slope slope_of(const Curve& curve);
-// Ratio of a's seconds to b's, where both have a point: its interval is the wider one of what the
-// scatter about the line and what the ratios' own intervals give.
-Slope slope_of_ratio(const Curve& a, const Curve& b);
 std::optional<Point> at(const Curve& curve, double x);
 std::vector<std::string> ids_of(const std::vector<Curve>& curves);
 
-// A claim looked at in several ways, each with its words. The first decides.
+// A claim looked at in several ways, each with its words, of which the first decides: the project's
+// question, an error of at most 2 %, and beside it the paper's own, any motion, and `more`.
 using Ways = std::vector<std::pair<std::string, Verdict>>;
-Verdict in_ways(const Ways& ways);
-// The project's question, an error of at most 2 %, and beside it the paper's own, any motion.
-Ways at_levels(const std::function<Verdict(double level)>& judge);
+Verdict at_levels(const std::function<Verdict(double level)>& judge, const Ways& more = {});
 
 // ---- One function a claim; without a verdict where measurements are missing ----
 
@@ -112,8 +101,6 @@ double parabola_sag(double length, double strain);
 // of the end that is higher and of the one that is lower.
 struct Slip {
   double least, most;
-  bool held() const { return most < 1; }
-  bool past() const { return least > 1; }
 };
 Slip slip_of(const Point& point);
 
@@ -125,6 +112,7 @@ struct ClaimVerdict : claims::Verdict {
   std::string id, where, statement;
   std::string rule;  // how the verdict follows from what was measured
 };
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ClaimVerdict, id, statement, verdict, measured, rule)
 
 // Throws UsageError for a result of --untimed, whose times say nothing.
 void check_timed(const nlohmann::json& result);

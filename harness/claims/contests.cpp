@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -17,6 +16,44 @@ namespace {
 
 std::string count_of(double n) { return text(n, 6); }
 std::string vertices_of(double n) { return count_of(n) + " vertices"; }
+
+Answer below(const Slope& slope, double threshold) {
+  return above(Slope{-slope.value, slope.half_width, slope.points}, -threshold);
+}
+
+// Slope of seconds over the axis, both logarithmic.
+Slope slope_of(const Curve& curve) {
+  std::vector<double> x, y;
+  for (const auto& [at, point] : curve) {
+    x.push_back(at);
+    y.push_back(point.seconds());
+  }
+  return log_log_slope(x, y);
+}
+
+// Ratio of a's seconds to b's, where both have a point: its interval is the wider one of what the
+// scatter about the line and what the ratios' own intervals give.
+Slope slope_of_ratio(const Curve& a, const Curve& b) {
+  std::vector<double> x, y, half_widths;
+  for (const auto& [place, point] : a) {
+    const auto other = at(b, place);
+    if (!other) continue;
+    const Ratio over = ratio(point, *other);
+    x.push_back(place);
+    y.push_back(over.value);
+    half_widths.push_back(over.known() ? 0.5 * std::log(over.high / over.low) : 0);
+  }
+  Slope slope = log_log_slope(x, y);
+  double mean = 0, squares = 0, spread = 0;
+  for (const double at : x) mean += std::log(at) / static_cast<double>(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double distance = std::log(x[i]) - mean;
+    squares += distance * distance;
+    spread += distance * distance * half_widths[i] * half_widths[i];
+  }
+  if (squares > 0) slope.half_width = std::max(slope.half_width, std::sqrt(spread) / squares);
+  return slope;
+}
 
 // How the ratio of times changes along the axis, and the ratio at both ends.
 Verdict growth(const Curve& springs, const Curve& fast,
@@ -35,13 +72,14 @@ Verdict growth(const Curve& springs, const Curve& fast,
   return found;
 }
 
-Ways growth_at_levels(const Points& points, const char* sweep,
-                      Answer (*fast_is_better)(const Slope&, double),
-                      std::string (*place)(double)) {
-  return at_levels([=, &points](double level) {
+Verdict growth_at_levels(const Points& points, const char* sweep,
+                         Answer (*fast_is_better)(const Slope&, double),
+                         std::string (*place)(double), const Ways& more = {}) {
+  const auto judge = [=, &points](double level) {
     return growth(points.best("chain", sweep, implicit_springs.name, level),
                   points.best("chain", sweep, fast_projection.name, level), fast_is_better, place);
-  });
+  };
+  return at_levels(judge, more);
 }
 
 std::string effort(const Point& p) {
@@ -83,7 +121,7 @@ std::string first_of_all(const Points& points, const std::string& sweep, const C
   const Curve leaders = points.best("drape", sweep, "", level, vertices);
   std::string all, last;
   for (const auto& entry : fast) {
-    const std::string first = points.roles.at_any_settings(leaders.at(entry.first).contestant());
+    const std::string first = points.roles.of(leaders.at(entry.first).contestant()).row();
     all += first == last ? ", " + words(entry.first)
                          : (all.empty() ? "" : "; ") + first + " at " + words(entry.first);
     last = first;
@@ -161,19 +199,19 @@ Answer smaller(const Steps& a, const Steps& b) {
 }  // namespace
 
 Verdict chain_time_over_strain(const Points& points) {
-  Ways ways = growth_at_levels(points, "strain", below, percent);
-  ways.emplace_back("over the error at any limit",
-                    growth(points.best_at_errors("chain", implicit_springs.name),
-                           points.best_at_errors("chain", fast_projection.name), below, percent));
-  return in_ways(ways);
+  const Verdict over_error =
+      growth(points.best_at_errors("chain", implicit_springs.name),
+             points.best_at_errors("chain", fast_projection.name), below, percent);
+  return growth_at_levels(points, "strain", below, percent,
+                          {{"over the error at any limit", over_error}});
 }
 
 Verdict chain_time_over_resolution(const Points& points) {
-  return in_ways(growth_at_levels(points, "resolution", above, vertices_of));
+  return growth_at_levels(points, "resolution", above, vertices_of);
 }
 
 Verdict chain_speed(const Points& points) {
-  return in_ways(at_levels([&](double level) -> Verdict {
+  return at_levels([&](double level) -> Verdict {
     const auto at_one_percent = [&](const PaperMethod& method) {
       return at(points.best("chain", "strain", method.name, level), 0.01);
     };
@@ -191,7 +229,7 @@ Verdict chain_speed(const Points& points) {
                 ", fast projection " + effort(*fast) +
                 " (the search for a stiffness is not charged)",
             {springs->id(), fast->id()}};
-  }));
+  });
 }
 
 Verdict drape_time_over_strain(const Points& points) {
@@ -199,17 +237,17 @@ Verdict drape_time_over_strain(const Points& points) {
   for (const Point& p : points.all) {
     if (p.scene() == "drape" && p.sweep() == "strain") ++sizes[p.vertices()];
   }
-  return in_ways(at_levels([&](double level) {
+  return at_levels([&](double level) {
     Verdict found;
     for (const auto& size : sizes) {
       if (found.verdict == not_measured) found = drape_over_strain(points, level, size.first);
     }
     return found;
-  }));
+  });
 }
 
 Verdict drape_time_over_resolution(const Points& points) {
-  return in_ways(at_levels([&](double level) -> Verdict {
+  return at_levels([&](double level) -> Verdict {
     const Curve fast = points.best("drape", "resolution", fast_projection.name, level);
     std::map<std::string, Curve> others;
     for (const PaperMethod& method : all_paper_methods) {
@@ -245,7 +283,7 @@ Verdict drape_time_over_resolution(const Points& points) {
             : largest == Answer::yes                    ? verdict_of(all)
                                                         : verdict_of(largest),
             details + first_of_all(points, "resolution", fast, level, count_of), ids_of({fast})};
-  }));
+  });
 }
 
 Verdict matrix_sizes(const Points& points) {
@@ -274,7 +312,7 @@ Verdict matrix_sizes(const Points& points) {
 }
 
 Verdict shake_small_steps(const Points& points) {
-  return in_ways(at_levels([&](double level) -> Verdict {
+  return at_levels([&](double level) -> Verdict {
     std::vector<Answer> answers;
     std::string details;
     std::vector<std::string> evidence;
@@ -302,7 +340,7 @@ Verdict shake_small_steps(const Points& points) {
             "so at " + std::to_string(yes) + " of " + std::to_string(all) + " places, not so at " +
                 std::to_string(no) + details,
             evidence};
-  }));
+  });
 }
 
 }  // namespace harness::claims

@@ -1,6 +1,7 @@
 // bench compare, baseline and ab: two results point by point, a result for the next comparisons,
 // and two builds of this program timed against each other.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "harness/base/child_process.h"
@@ -236,8 +237,8 @@ struct Ab : CompareOptions {
         point["settings"]["stiffness"] = options.at("stiffness");
       const double seconds = point.at("seconds_per_simulated_second").at("min").get<double>() *
                              point.at("duration").get<double>();
-      points.push_back(
-          {std::move(point), samples_for(std::max(seconds, least_sample), least_measured)});
+      const double runs = std::ceil(least_measured / std::max(seconds, least_sample));
+      points.push_back({std::move(point), static_cast<int>(std::clamp(runs, 1.0, 1000.0))});
     }
     if (points.empty())
       throw NotComparable("'" + before.path + "' has no point that runs to its end");

@@ -198,20 +198,14 @@ struct Results : PageOptions {
 // What the report says and draws: every file with its analysis, the verdicts on the claims, and the
 // findings of all sweeps, those of pieces of one sweep taken together.
 json report_json(const std::vector<NamedResult>& files) {
-  json results = json::array(), claims = results, findings = results;
+  json results = json::array(), findings = results;
   for (const auto& [name, document] : files)
     results.push_back({{"name", name}, {"document", with_analysis(document)}});
-  for (const ClaimVerdict& claim : judge_claims(documents_of(files, is_of_runs)))
-    claims.push_back({{"id", claim.id},
-                      {"statement", claim.statement},
-                      {"verdict", claim.verdict},
-                      {"measured", claim.measured},
-                      {"rule", claim.rule}});
   if (const auto sweeps = documents_of(files, is_sweep); !sweeps.empty())
     findings = analysis::findings_of(analysis::planes_of(joined(sweeps)));
   return {{"results", std::move(results)},
           {"findings", std::move(findings)},
-          {"claims", std::move(claims)}};
+          {"claims", judge_claims(documents_of(files, is_of_runs))}};
 }
 
 struct Report : PageOptions {

@@ -170,10 +170,8 @@ struct SweepCommand : SweepOptions, OutputOptions {
 
   int run_hard_cases(const Words& typed) const {
     check_known("profile", profile, profiles());
-    const HardCaseValues values = hard_case_values(profile);
-    const std::vector<HardCase> cases = hard_cases(values);
     StabilityPlan plan =
-        plan_stability(cases, {solver_pattern(solver), pattern_of("--case", hard_case), {}});
+        plan_stability(profile, solver_pattern(solver), pattern_of("--case", hard_case));
     if (!shard_text.empty()) plan.keep(parse_shard(shard_text));
     if (dry_run) {
       std::cout << plan.cells() << " cells: " << plan.cases.size() << " hard cases by "
@@ -185,7 +183,7 @@ struct SweepCommand : SweepOptions, OutputOptions {
     json context = machine_context();
     context["selection"] = {{"solver", solver},
                             {"case", hard_case},
-                            {"values", values},
+                            {"values", hard_case_values(profile)},
                             {"seed", seed},
                             {"shard", shard_text}};
     const auto run = [&](Journal& journal, const json&) -> Finished {

@@ -12,13 +12,14 @@
 #include "harness/points/result_file.h"
 
 namespace harness {
-namespace {
-
-using nlohmann::json;
 
 std::string per_cent(double ratio) {
   return (ratio < 1 ? "" : "+") + number_text(100 * (ratio - 1), 3) + " %";
 }
+
+namespace {
+
+using nlohmann::json;
 
 // The least number of runs of each that can be significant at all.
 std::size_t least_samples(double significance) {
@@ -247,14 +248,6 @@ PointChange compare_point(const ComparedPoint& base, const ComparedPoint& next, 
     if (can.times()) note_times(base, next, gate, can, result);
   }
   return result;
-}
-
-std::size_t Comparison::count(Change change) const {
-  return std::ranges::count(points, change, &PointChange::change);
-}
-
-bool Comparison::any(bool (*is)(Change)) const {
-  return std::ranges::any_of(points, is, &PointChange::change);
 }
 
 Comparison compare(const ComparedResult& base, const ComparedResult& next, const Gate& gate) {

@@ -78,6 +78,8 @@ nlohmann::ordered_json baseline_document(const ComparedResult& result);
 
 // ---- The comparison ----
 
+std::string per_cent(double ratio);  // how far from 1: "+5 %", "-3.1 %"
+
 // From what matters most, in the order of tables.
 enum class Change {
   newly_failing,  // ran in the base
@@ -139,8 +141,12 @@ struct Comparison {
   std::vector<PointChange> points;  // of the base in its order, then new ones
   std::vector<std::string> notes;   // what was not compared, and why
 
-  std::size_t count(Change change) const;
-  bool any(bool (*is)(Change)) const;
+  std::size_t count(Change change) const {
+    return std::ranges::count(points, change, &PointChange::change);
+  }
+  bool any(bool (*is)(Change)) const {
+    return std::ranges::any_of(points, is, &PointChange::change);
+  }
   bool undecided() const { return std::ranges::any_of(points, &PointChange::undecided); }
 };
 
@@ -168,9 +174,6 @@ struct PairedPoint {
 
 // Runs one process on one point; what `bench point` printed, all runs among its samples.
 using RunOne = std::function<ComparedPoint(Side, const PairedPoint&)>;
-
-// Runs in one process, so that a process measures for at least `least` seconds. seconds: one run.
-int samples_for(double seconds, double least);
 
 // `pairs` rounds over all points; the sides take turns in coming first (ABBA). A point that has
 // failed on either side is left alone from then on.

@@ -1,8 +1,6 @@
 #include <algorithm>
-#include <cmath>
 
 #include "harness/base/statistics.h"
-#include "harness/base/text.h"
 #include "harness/compare/comparison.h"
 
 namespace harness {
@@ -27,10 +25,6 @@ void run_side(Side side, PairedPoint& point, const RunOne& run) {
   said.samples = std::move(times);
 }
 
-std::string change_text(double ratio) {
-  return (ratio < 1 ? "" : "+") + number_text(std::round(100 * (ratio - 1))) + " %";
-}
-
 // "Same" is a statement: it takes runs on both sides, and times that exclude a change as large as
 // the gate counts.
 PointChange without_false_same(PointChange result, const PairedPoint& point, const Gate& gate) {
@@ -45,8 +39,8 @@ PointChange without_false_same(PointChange result, const PairedPoint& point, con
              (result.change == Change::same || result.change == Change::ambiguous)) {
     const Ratio ratio = ratio_of_times(point.after.samples, point.before.samples);
     if (ratio.low < 1 / gate.median_ratio || ratio.high > gate.median_ratio)
-      cannot_tell("the time may have changed by anything from " + change_text(ratio.low) + " to " +
-                  change_text(ratio.high));
+      cannot_tell("the time may have changed by anything from " + per_cent(ratio.low) + " to " +
+                  per_cent(ratio.high));
   }
   return result;
 }
@@ -70,11 +64,6 @@ PointChange judge_again(const PairedPoint& point, Change first, const Gate& gate
 }
 
 }  // namespace
-
-int samples_for(double seconds, double least) {
-  constexpr double most = 1000;
-  return static_cast<int>(std::clamp(std::ceil(least / std::max(seconds, 1e-9)), 1.0, most));
-}
 
 void run_pairs(const std::vector<PairedPoint*>& points, int pairs, const RunOne& run) {
   for (int pair = 0; pair < pairs; ++pair) {

@@ -136,9 +136,7 @@ const Moment& moment(const std::string& scene, int n) {
   const auto [place, is_new] = moments.try_emplace({scene, n});
   Moment& m = place->second;
   if (!is_new) return m;
-  const auto found_type = find_scene(scene);
-  const SceneType& type = *found_type;
-  m.scene = type.build(complete_parameters(type, {{"n", n}}));
+  m.scene = built_scene(scene, {{"n", n}});
   m.h = scene == "drape" ? 0.005 : std::min(0.001, 1.0 / n);
   m.state = m.scene.start;
   const auto stepper = make_stepper("fast_projection", m.scene.problem, {});

@@ -66,4 +66,9 @@ SceneParameters complete_parameters(const SceneType& type, const SceneParameters
   return all;
 }
 
+Scene built_scene(std::string_view name, const SceneParameters& given) {
+  const auto type = find_scene(name);
+  return type->build(complete_parameters(*type, given));
+}
+
 }  // namespace harness

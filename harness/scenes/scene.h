@@ -85,6 +85,8 @@ std::vector<std::string> scene_kinds();  // of all scenes, each once
 // The scene's parameters with `given` put in. Throws UsageError, naming the parameter, for unknown
 // or impossible ones.
 SceneParameters complete_parameters(const SceneType& type, const SceneParameters& given);
+// A scene that there is, with some of its parameters given.
+Scene built_scene(std::string_view name, const SceneParameters& given);
 
 // ---- Cloth from a mesh of one's own: "mesh:shirt.obj,pins=y>1.2,body=body.obj" ----
 //

@@ -107,11 +107,6 @@ Trial trial_of(Mesh mesh, double step, int steps, double strain_limit) {
   return trial_of(std::move(scene), step, steps, strain_limit);
 }
 
-Scene scene_of(const char* name, const SceneParameters& given) {
-  const auto type = find_scene(name);
-  return type->build(complete_parameters(*type, given));
-}
-
 void add_noise(Positions& x, const std::vector<int>& pinned, double size, std::mt19937_64& random) {
   std::uniform_real_distribution<double> noise(-size, size);
   const Positions before = x;

@@ -31,9 +31,6 @@ Mesh hung_cloth(int n);  // the same, pinned at one corner only
 // (English and Bridson 2008). Pinned at the outermost midpoints of one edge of the cloth.
 Mesh midpoint_cloth(int n);
 
-// A scene of scene_types() with some parameters given.
-Scene scene_of(const char* name, const SceneParameters& given);
-
 // `steps` steps of `step` seconds; 0: the scene's whole duration.
 Trial trial_of(Scene scene, double step, int steps = 0, double strain_limit = 0.01);
 Trial trial_of(Mesh mesh, double step, int steps, double strain_limit = 0.01);

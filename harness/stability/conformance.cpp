@@ -120,7 +120,7 @@ Case drape(const inextensible::Backend& solver, double step, int steps) {
   SceneParameters given{{"n", 9}};
   if (!solver.takes_shear) given["shear"] = 0;
   if (!solver.takes_collider) given["radius"] = 0;
-  return case_of("drape of 9 x 9", cases::scene_of("drape", given), step, steps);
+  return case_of("drape of 9 x 9", built_scene("drape", given), step, steps);
 }
 
 bool keeps_a_limit(const inextensible::Backend& solver) {
@@ -137,13 +137,11 @@ std::unique_ptr<Stepper> stepper_for(const Examinee& solver, const Case& c,
   }
 }
 
-bool same_bits(const Positions& a, const Positions& b) {
-  return a.cols() == b.cols() &&
-         std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
-}
-
 bool same_bits(const State& a, const State& b) {
-  return same_bits(a.x, b.x) && same_bits(a.v, b.v) && a.time == b.time;
+  const auto same = [](const Positions& p, const Positions& q) {
+    return p.cols() == q.cols() && std::memcmp(p.data(), q.data(), sizeof(double) * p.size()) == 0;
+  };
+  return same(a.x, b.x) && same(a.v, b.v) && a.time == b.time;
 }
 
 // ---- Pins, limit and counters of ordinary scenes at ordinary steps ----
@@ -175,7 +173,7 @@ struct Runs {
 
 Findings ordinary_runs(const Examinee& solver) {
   Runs all;
-  all.take(solver, case_of("chain of 20", cases::scene_of("chain", {{"n", 20}}), 1.0 / 400, 80));
+  all.take(solver, case_of("chain of 20", built_scene("chain", {{"n", 20}}), 1.0 / 400, 80));
   all.take(solver, drape(solver.backend, 1.0 / 400, 60));
   for (std::uint64_t seed = 1; seed <= 4; ++seed)
     all.take(solver, net(seed, 5, 2, 2, 0.005, 10, 0.005));
@@ -271,7 +269,7 @@ Findings momentum(const Examinee& solver) {
 
 Findings refusal(const Examinee& solver) {
   const Case torn = case_of("a row between pins 20 % farther apart than it is long",
-                            cases::scene_of("taut_row", {{"stretch", 1.2}, {"n", 12}}), 0.01, 1);
+                            built_scene("taut_row", {{"stretch", 1.2}, {"n", 12}}), 0.01, 1);
   Case overflow = net(1, 4, 1, 2, 0.01, 1, 0.005);
   overflow.name = "speeds of 1e300 m/s";
   overflow.scene.start.v *= 1e300;
@@ -380,7 +378,7 @@ Findings consistency(const Examinee& solver) {
   // for what does not vanish with h; between the two, on a logarithmic scale.
   constexpr double not_vanishing = 0.68;
   const Case c =
-      case_of("chain of 8", cases::scene_of("chain", {{"n", links + 1}}), 0.32 / 80, 80, 1e-6);
+      case_of("chain of 8", built_scene("chain", {{"n", links + 1}}), 0.32 / 80, 80, 1e-6);
   // How far a step is iterated is a tolerance, not a part of the formula: it must not be what
   // shows.
   inextensible::Settings settings;
@@ -427,12 +425,8 @@ Findings all_hard_cases(const Examinee& solver) {
   const char* check = "hard cases";
   if (!solver.options.hard_cases) return {not_applicable(check, "left out")};
   if (!solver.backend.contestant) return {not_applicable(check, "for contestants only")};
-  const auto cases = hard_cases(hard_case_values("quick"));
-  StabilityFilters filters;
-  filters.solver = Pattern("solver", solver.backend.name);
-  filters.but_case = Pattern("case", "^(largest step|same frame)");
-  const StabilityOutcome outcome =
-      run_stability(plan_stability(cases, filters), solver.options.seed, {});
+  const StabilityPlan plan{{solver.backend.name}, hard_cases(hard_case_values("quick"))};
+  const StabilityOutcome outcome = run_stability(plan, solver.options.seed, {});
   int survived = 0, refused = 0, slow = 0, known = 0, unexpected = 0;
   std::string advice;
   for (const StabilityCell& cell : outcome.cells) {

@@ -66,9 +66,9 @@ void add_expectations(std::vector<HardCase>& cases) {
       const json of = entry.value("of", json::array());
       expected.solvers =
           of.is_string() ? std::vector{of.get<std::string>()} : of.get<std::vector<std::string>>();
-      expected.outcome = outcome_of(entry.at("outcome"));
+      expected.outcome = entry.at("outcome");
       expected.why = entry.at("why");
-      if (entry.contains("or")) expected.other = {outcome_of(entry.at("or")), entry.at("because")};
+      if (entry.contains("or")) expected.other = {entry.at("or"), entry.at("because")};
     }
   }
 }
@@ -90,9 +90,8 @@ const std::vector<KnownDifference>& known_differences() {
     for (const json& entry : hard_cases_document().at("known_differences")) {
       const json& cause =
           hard_cases_document().at("causes").at(entry.at("cause").get<std::string>());
-      list.push_back({entry.at("solver"), outcome_of(entry.at("fixed")),
-                      outcome_of(entry.at("outcome")), cause.at("reason"), cause.at("remedy"),
-                      entry.at("cases")});
+      list.push_back({entry.at("solver"), entry.at("fixed"), entry.at("outcome"),
+                      cause.at("reason"), cause.at("remedy"), entry.at("cases")});
     }
     return list;
   }();

@@ -70,7 +70,7 @@ Trial two_edges(double half_span, double y, double candidate_y) {
 // ---- Rows at full length between pins, and constraints that cannot be met ----
 
 Scene row_of_links(double stretch) {
-  return scene_of("taut_row", {{"stretch", stretch}, {"duration", 0.5}});
+  return built_scene("taut_row", {{"stretch", stretch}, {"duration", 0.5}});
 }
 
 // A row of 1 m that is strained by s sags by sqrt(3 s / 8) m.
@@ -197,7 +197,7 @@ Trial with_budget(Mesh mesh) {
 // 11 x 11 vertices, so that edges are two fifths of the ball's radius; until the cloth lies on the
 // ball, and its sides hang.
 Trial on_a_ball(const char* parameter, double value, double speed = 0, double depth = 0) {
-  Scene scene = scene_of("drape", {{"n", 11}, {parameter, value}});
+  Scene scene = built_scene("drape", {{"n", 11}, {parameter, value}});
   if (speed > 0) scene.start.v.row(1).setConstant(-speed);
   if (depth > 0) scene.start.x.row(1).array() -= depth;
   Trial trial = trial_of(std::move(scene), 1.0 / 200, 40);
@@ -274,7 +274,7 @@ constexpr Builder builders[] = {
     {"1 m patch",
      [](double limit) {
        return taut(
-           trial_of(scene_of("patch", {{"n", 15}, {"duration", 0.5}}), 1.0 / 400, 0, limit));
+           trial_of(built_scene("patch", {{"n", 15}, {"duration", 0.5}}), 1.0 / 400, 0, limit));
      }},
     {"heavy end", heavy_end},
     {"heavy_swing", heavy_swing},

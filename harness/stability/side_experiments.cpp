@@ -24,7 +24,7 @@ LargestStep largest_step(const StabilityScene& scene, const std::string& solver,
     const TrialResult result = run_isolated_trial(
         [&] {
           Trial trial = cases::trial_of(
-              cases::scene_of(scene.type, {{"n", static_cast<double>(scene.n)}}), whole(step));
+              built_scene(scene.type, {{"n", static_cast<double>(scene.n)}}), whole(step));
           trial.timeout = trial.timeout_smaller = 2;
           return trial;
         },
@@ -121,8 +121,7 @@ std::string SameFrameScene::name() const {
 }
 
 SameFrame same_frame(const SameFrameScene& wanted, std::uint64_t seed) {
-  const auto type = find_scene(wanted.scene);
-  const Scene scene = type->build(complete_parameters(*type, {{"n", wanted.side}}));
+  const Scene scene = built_scene(wanted.scene, {{"n", wanted.side}});
   SameFrame found;
   found.scene = wanted;
   struct Run {

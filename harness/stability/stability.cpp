@@ -38,19 +38,18 @@ ExpectationCounts StabilityOutcome::counts() const {
   return c;
 }
 
-StabilityPlan plan_stability(const std::vector<HardCase>& cases, const StabilityFilters& filters) {
-  StabilityPlan plan;
+StabilityPlan plan_stability(const std::string& profile, const std::optional<Pattern>& solver,
+                             const std::optional<Pattern>& hard_case) {
+  StabilityPlan plan{{}, hard_cases(hard_case_values(profile))};
   for (const auto& backend : inextensible::backends()) {
-    if (backend.contestant && (!filters.solver || matches(*filters.solver, backend.name)))
+    if (backend.contestant && (!solver || matches(*solver, backend.name)))
       plan.solvers.emplace_back(backend.name);
   }
   const auto selected = [&](const std::string& name) {
-    return (!filters.hard_case || filters.hard_case->found_in(name)) &&
-           !(filters.but_case && filters.but_case->found_in(name));
+    return !hard_case || hard_case->found_in(name);
   };
-  for (const HardCase& c : cases) {
-    if (selected(c.name) || selected(c.row)) plan.cases.push_back(&c);
-  }
+  std::erase_if(plan.cases,
+                [&](const HardCase& c) { return !selected(c.name) && !selected(c.row); });
   plan.scenes = {{"chain of 20", "chain", 20, 1.0 / 6400},
                  {"drape 11 x 11", "drape", 11, 1.0 / 3200},
                  {"patch 11 x 11", "patch", 11, 1.0 / 3200},
@@ -87,16 +86,16 @@ StabilityOutcome run_stability(const StabilityPlan& plan, std::uint64_t seed,
     if (events.interrupted()) throw Interrupted();
   };
   try {
-    for (const HardCase* c : plan.cases) {
+    for (const HardCase& c : plan.cases) {
       for (const std::string& solver : plan.solvers) {
         stop_if_asked();
-        const std::string key = cell_key(c->name, solver);
+        const std::string key = cell_key(c.name, solver);
         const nlohmann::json result = events.once(key, [&] {
-          return to_json(run_isolated_trial(c->build, solver, seed, events.interrupted));
+          return to_json(run_isolated_trial(c.build, solver, seed, events.interrupted));
         });
-        StabilityCell cell{c, solver, trial_result_of(result), c->expectation(solver)};
+        StabilityCell cell{&c, solver, trial_result_of(result), c.expectation(solver)};
         cell.expected = acceptable(cell.expectation, solver, cell.result);
-        if (!cell.expected) cell.known = known_difference(c->name, solver, cell.result);
+        if (!cell.expected) cell.known = known_difference(c.name, solver, cell.result);
         outcome.cells.push_back(std::move(cell));
         events.done(key, outcome.cells.size(), plan.cells());
       }
@@ -132,7 +131,19 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ExpectationCounts, cells, strict, two_admitte
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LargestStep, scene, solver, step, failing_step, detail)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Freedom, mesh, vertices, constraints, rank, degrees_of_freedom)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FrameDistances, rms, largest)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SameFrame, first_contact, times, icd, moved_start, stopped)
+
+static void to_json(nlohmann::json& object, const SameFrame& frame) {
+  object = {{"scene", frame.scene.name()},
+            {"side", frame.scene.side},
+            {"strain_limit", frame.scene.strain_limit},
+            {"step", frame.scene.step},
+            {"start_moved_by", frame.scene.moved},
+            {"first_contact", frame.first_contact},
+            {"times", frame.times},
+            {"icd", frame.icd},
+            {"moved_start", frame.moved_start},
+            {"stopped", frame.stopped}};
+}
 
 namespace {
 
@@ -149,25 +160,12 @@ json known_json(const StabilityOutcome& outcome) {
       }
       list.push_back({{"case", hard_case},
                       {"solver", known.solver},
-                      {"at_fixed_step", to_string(known.fixed)},
-                      {"outcome", to_string(known.outcome)},
+                      {"at_fixed_step", known.fixed},
+                      {"outcome", known.outcome},
                       {"reason", known.reason},
                       {"mends", known.remedy},
                       {"seen", seen}});
     }
-  }
-  return list;
-}
-
-json same_frames_json(const std::vector<SameFrame>& frames) {
-  json list = json::array();
-  for (const SameFrame& f : frames) {
-    list.push_back(f);
-    list.back().update({{"scene", f.scene.name()},
-                        {"side", f.scene.side},
-                        {"strain_limit", f.scene.strain_limit},
-                        {"step", f.scene.step},
-                        {"start_moved_by", f.scene.moved}});
   }
   return list;
 }
@@ -186,9 +184,9 @@ json stability_document(json context, const StabilityOutcome& outcome, std::uint
                 {"case", cell.hard_case->name},
                 {"what", cell.hard_case->what},
                 {"solver", cell.solver},
-                {"expected_at_fixed_step", to_string(cell.expectation.outcome)},
+                {"expected_at_fixed_step", cell.expectation.outcome},
                 {"why", cell.expectation.why},
-                {"admitted_beside", other ? json(to_string(other->outcome)) : json()},
+                {"admitted_beside", other ? json(other->outcome) : json()},
                 {"why_admitted", other ? json(other->why) : json()},
                 {"as_expected", cell.expected},
                 {"known_difference", cell.known != nullptr}});
@@ -203,7 +201,7 @@ json stability_document(json context, const StabilityOutcome& outcome, std::uint
           {"known_differences", known_json(outcome)},
           {"largest_steps", outcome.largest_steps},
           {"degrees_of_freedom", outcome.freedom},
-          {"same_frame", same_frames_json(outcome.same_frames)}};
+          {"same_frame", outcome.same_frames}};
 }
 
 }  // namespace harness

@@ -100,26 +100,22 @@ SameFrame same_frame(const SameFrameScene& scene, std::uint64_t seed);
 
 // ---- The sweep ----
 
-struct StabilityFilters {
-  std::optional<Pattern> solver;     // must match the solver's whole name
-  std::optional<Pattern> hard_case;  // must be found in a row's or a case's name
-  std::optional<Pattern> but_case;   // must not
-};
-
 // What will be run.
 struct StabilityPlan {
   std::vector<std::string> solvers;
-  std::vector<const HardCase*> cases;
-  std::vector<StabilityScene> scenes;  // for the largest steps
-  std::vector<SameFrameScene> frames;
+  std::vector<HardCase> cases;
+  std::vector<StabilityScene> scenes = {};  // for the largest steps
+  std::vector<SameFrameScene> frames = {};
   bool freedom = false;
 
   std::size_t cells() const { return cases.size() * solvers.size(); }
   // One part of it: a stretch of each list, and the first part has the degrees of freedom.
   void keep(const Shard& part);
 };
-// Throws UsageError if nothing matches. `cases` must outlive the plan.
-StabilityPlan plan_stability(const std::vector<HardCase>& cases, const StabilityFilters& filters);
+// All of hard_cases(profile) and beside them. solver: must match the solver's whole name;
+// hard_case: must be found in a row's or a case's name. Throws UsageError if nothing matches.
+StabilityPlan plan_stability(const std::string& profile, const std::optional<Pattern>& solver,
+                             const std::optional<Pattern>& hard_case);
 
 struct StabilityOutcome {
   std::vector<StabilityCell> cells;
@@ -139,7 +135,7 @@ inline std::string cell_key(const std::string& hard_case, const std::string& sol
 }
 
 // Cells are kept under their keys; `events.done` hears of everything else too, with nothing to
-// count. The plan's cases must outlive the outcome.
+// count. The plan must outlive the outcome.
 StabilityOutcome run_stability(const StabilityPlan& plan, std::uint64_t seed,
                                const RunEvents& events);
 

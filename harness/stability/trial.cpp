@@ -229,11 +229,11 @@ TrialResult run_trial(const std::function<Trial()>& build, const std::string& so
   return result;
 }
 
-Outcome outcome_of(const json& name) {
+void from_json(const json& name, Outcome& outcome) {
   const auto place = std::ranges::find(outcome_names, name.get<std::string>());
   if (place == std::end(outcome_names))
     throw json::other_error::create(502, name.dump() + " is no outcome of a trial", nullptr);
-  return static_cast<Outcome>(place - outcome_names);
+  outcome = static_cast<Outcome>(place - outcome_names);
 }
 
 json to_json(const TrialResult& result) {

@@ -84,14 +84,9 @@ TrialResult run_isolated_trial(const std::function<Trial()>& build, const std::s
                                std::uint64_t seed,
                                const std::function<bool()>& interrupted = nullptr);
 
-// The outcome of that name; throws json::exception for what is none.
-Outcome outcome_of(const nlohmann::json& name);
-
-template <>
-struct FieldCodec<Outcome> {
-  static nlohmann::json write(Outcome outcome, bool) { return to_string(outcome); }
-  static void read(const nlohmann::json& from, Outcome& to, bool) { to = outcome_of(from); }
-};
+// By its name; the way back throws json::exception for what is none.
+inline void to_json(nlohmann::json& name, Outcome outcome) { name = to_string(outcome); }
+void from_json(const nlohmann::json& name, Outcome& outcome);
 
 inline constexpr std::tuple trial_fields{
     field("outcome", &TrialResult::outcome, "", "with smaller steps where its own was refused"),

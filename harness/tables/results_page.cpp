@@ -12,6 +12,7 @@
 #include "harness/base/table.h"
 #include "harness/base/text.h"
 #include "harness/claims/claims.h"
+#include "harness/points/result_file.h"
 #include "harness/tables/tables.h"
 
 namespace harness {
@@ -19,12 +20,15 @@ namespace harness {
 using namespace analysis;  // tables print what was analysed
 using nlohmann::json;
 
+namespace {
+
+std::string quoted(const std::string& name) { return '`' + name + '`'; }
+
+// As number_text(), but never with a power of ten where the number has more digits.
 std::string plain(double value, int digits) {
   const bool large = value >= 1 && std::isfinite(value);
   return number_text(value, std::max(digits, large ? static_cast<int>(std::log10(value)) + 1 : 1));
 }
-
-namespace {
 
 std::string solver_of(const json& entry) { return entry.at("solver"); }
 
@@ -33,6 +37,121 @@ void print_table(std::ostream& out, const std::string& introduction, const Table
   print_markdown(out, table);
   out << '\n';
 }
+
+// ---- Planes: the fastest within each strain limit and level of error ----
+
+// "`yarn_projection` 8.1 ms, 1/100 s, 1.7 (1.5-1.8) `icd`": bold if it is ahead beyond the noise.
+std::string cell_text(const Cell& cell) {
+  const Entry* first = cell.first();
+  if (!first) return cell.empty_because;
+  const std::string name = quoted(first->row) + (first->role.unranked ? " `u`" : "");
+  std::string text = (cell.clear() ? "**" + name + "**" : name) + " " +
+                     plain(1e3 * first->point.seconds(), 3) + " ms, " +
+                     step_text(first->point.step());
+  if (const double kept = first->point.strain_limit(); kept < cell.strain_limit)
+    text += " at " + percent(kept);
+  if (cell.level == any_motion && std::isfinite(first->error))
+    text += ", off by " + number_text(100 * first->error, 2) + " %";
+  if (const Entry* paper = cell.rival(Rival::paper_best); paper && paper != first)
+    text += "; " + analysis::text(*cell.lead_over(paper)) + " " + quoted(paper->row);
+  return text;
+}
+
+Table table_of(const std::vector<Plane>& planes) {
+  const bool sizes = planes.front().sweep == "resolution";
+  Table table{{sizes ? "vertices" : "strain"}, {}, 0};
+  for (const double level : planes.front().levels)
+    table.head.push_back(level == any_motion ? "any motion" : "error <= " + percent(level));
+  for (const Plane& plane : planes) {
+    for (const Cell& cell : plane.cells) {  // by limit, then by level
+      if (cell.level == plane.levels.front())
+        table.rows.push_back({sizes ? std::to_string(plane.vertices) : percent(cell.strain_limit)});
+      table.rows.back().push_back(cell_text(cell));
+    }
+  }
+  return table;
+}
+
+// How much of the lead at the headline's error is the time stepper's, and how much the method's: at
+// 1 % strain. The figure has all limits.
+void print_attribution(std::ostream& out, const Plane& plane) {
+  constexpr double limit = 0.01;
+  for (const Cell& cell : plane.cells) {
+    const Entry* first = cell.first();
+    if (cell.level != headline_error || cell.strain_limit != limit || !first) continue;
+    out << "Where the lead of " << quoted(first->row) << " at " << percent(limit)
+        << " comes from, in times its time: ";
+    for (const auto& [words, which] :
+         {std::pair("the same method as published ", Rival::first_as_published),
+          {"; the next method in the same stepper ", Rival::rival_in_stepper},
+          {"; the paper's best as published ", Rival::paper_best},
+          {", in any stepper ", Rival::paper_in_any_stepper}}) {
+      const Entry* other = cell.rival(which);
+      out << words
+          << (!other           ? "none in these results"
+              : other == first ? "itself"
+                               : analysis::text(*cell.lead_over(other)) + " " + quoted(other->row));
+    }
+    out << ". ";
+  }
+}
+
+// How much of each method's least error at 1 % is slack: what a limit of 0.1 % takes away at the
+// same step.
+void print_slack(std::ostream& out, const Runs& runs, const Plane& plane) {
+  constexpr double loose = 0.01, tight = 0.001;
+  const auto kept_limit = [&plane](const Point& p, double limit) {
+    return p.ok() && p.strain_limit() == limit && p.scene() == plane.scene &&
+           p.vertices() == plane.vertices && p.sweep() == plane.sweep;
+  };
+  std::string text;
+  for (const auto& [name, own] : grouped(runs.points, &Point::contestant)) {
+    if (!runs.roles.of(name).ranked()) continue;
+    double error = unknown, kept = unknown;
+    for (const Point& p : own) {
+      const auto tighter = std::ranges::find_if(
+          own, [&](const Point& q) { return q.step() == p.step() && kept_limit(q, tight); });
+      const double now = p.error_at(headline_error).distance;
+      if (kept_limit(p, loose) && tighter != own.end() && !(error < now)) {
+        error = now;
+        kept = tighter->error_at(headline_error).distance;
+      }
+    }
+    if (!(error > 0) || !std::isfinite(kept)) continue;
+    text += (text.empty() ? "" : ", ") + quoted(name) + " " + number_text(100 * error, 2) + " % (" +
+            number_text(100 * std::max(0.0, 1 - kept / error), 2) + " %)";
+  }
+  if (!text.empty())
+    out << "The least error at " << percent(loose)
+        << ", and in brackets how much of it is slack, which a limit of " << percent(tight)
+        << " takes away at the same step: " << text << ". ";
+}
+
+// The strain-error grid of each scene.
+void print_planes(std::ostream& out, const std::vector<json>& sweeps) {
+  if (sweeps.empty()) return;
+  const Runs runs(joined(sweeps));
+  std::vector<Plane> all = planes_of(runs);
+  std::erase_if(all, [](const Plane& plane) {
+    return std::ranges::none_of(plane.cells, [](const Cell& cell) { return cell.counting(1); });
+  });
+  for (const auto& [title, planes] : grouped(all, title_of)) {
+    out << "### " << title << "\n\n";
+    for (const Finding& finding : findings_of(planes)) {
+      for (const std::string& sentence : finding.sentences) out << sentence << ' ';
+    }
+    out << span_of_errors(planes);
+    for (const Plane& plane : planes) {
+      if (plane.sweep == "strain") print_attribution(out, plane);
+      if (plane.scene == "settling_drape") print_slack(out, runs, plane);
+    }
+    out << "\n\n";
+    print_markdown(out, table_of(planes));
+    out << '\n';
+  }
+}
+
+// ---- Beside the planes ----
 
 void print_growth(std::ostream& out, const std::vector<json>& sweeps) {
   std::vector<Growth> all;
@@ -118,7 +237,7 @@ void print_scene(std::ostream& out, const NamedResult& result, const SceneTable&
   std::sort(limits.rbegin(), limits.rend());
   Table table{{"solver"}};
   for (const double limit : limits) table.head.push_back(percent(limit) + ", " + about.unit);
-  for (const auto& [name, own] : grouped(fastest, [](const Point& p) { return p.contestant(); })) {
+  for (const auto& [name, own] : grouped(fastest, &Point::contestant)) {
     table.rows.push_back({name});
     for (const double limit : limits) {
       const auto at = std::ranges::find(own, limit, &Point::strain_limit);
@@ -208,6 +327,15 @@ void print_sources(std::ostream& out, const std::vector<NamedResult>& results) {
   print_markdown(out, table);
 }
 
+// "0.1 %, error 1.2 %"; in brackets where the motion is not right to the headline's error.
+std::string reach_text(const std::optional<Reach>& reach) {
+  if (!reach) return "-";
+  const std::string text =
+      percent(reach->strain_limit) + ", error " +
+      (std::isfinite(reach->error) ? number_text(100 * reach->error, 2) + " %" : "not known");
+  return reach->right ? text : "(" + text + ")";
+}
+
 }  // namespace
 
 Table outcomes_in(const json& document) {
@@ -291,6 +419,27 @@ void print_results_page(std::ostream& out, const std::vector<NamedResult>& resul
   print_sources(out, all);
 } catch (const json::exception& error) {
   throw UsageError(std::string("a result file is incomplete: ") + error.what());
+}
+
+void print_budgets(std::ostream& out, const std::vector<BudgetTable>& places) {
+  for (const BudgetTable& place : places) {
+    Table table{{"method"}};
+    for (const double budget : place.budgets)
+      table.head.push_back(number_text(1e3 * budget) + " ms a frame");
+    std::string none;
+    for (const Budgeted& row : place.rows) {
+      if (std::ranges::none_of(row.reached, [](const auto& reach) { return reach.has_value(); })) {
+        none += (none.empty() ? "" : ", ") + quoted(row.row);
+        continue;
+      }
+      table.rows.push_back({row.row});
+      for (const auto& reach : row.reached) table.rows.back().push_back(reach_text(reach));
+    }
+    out << "### " << scene_words(place.scene) << ", " << place.vertices << " vertices\n\n";
+    print_markdown(out, table);
+    if (!none.empty()) out << "\nNo run is that fast: " << none << ".\n";
+    out << '\n';
+  }
 }
 
 }  // namespace harness

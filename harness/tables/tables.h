@@ -37,18 +37,6 @@ void print_budgets(std::ostream& out, const std::vector<analysis::BudgetTable>& 
 
 // ---- What both have in common ----
 
-inline std::string quoted(const std::string& name) { return '`' + name + '`'; }
-// As number_text(), but never with a power of ten where the number has more digits.
-std::string plain(double value, int digits);
-
-// "chain, 80 vertices, over strain". Planes of one title are one table: those of a resolution sweep
-// are its rows.
-std::string title_of(const analysis::Plane& plane);
-// A sentence on the time until which errors at the headline's level count. Empty: they are not
-// known.
-std::string span_of_errors(const std::vector<analysis::Plane>& planes);
-// The strain-error grid of each scene: the fastest method within each limit and level of error.
-void print_planes(std::ostream& out, const std::vector<nlohmann::json>& sweeps);
 // Hard cases: how many of each solver's ended in which way; and what did not end as theory
 // expects, with the reason where one is known.
 Table outcomes_in(const nlohmann::json& document);

@@ -14,7 +14,7 @@ namespace {
 class CholmodSolver final : public SpdSolver, CholmodAnalysis {
  public:
   CholmodSolver(SymmetricPattern pattern, int supernodal)
-      : pattern_(std::move(pattern)), values_(pattern_.entries()) {
+      : SpdSolver(pattern.entries()), pattern_(std::move(pattern)) {
     common.supernodal = supernodal;
     common.final_ll = supernodal == CHOLMOD_SUPERNODAL;  // simplicial: L D L^T
     common.quick_return_if_not_posdef = 1;
@@ -30,8 +30,6 @@ class CholmodSolver final : public SpdSolver, CholmodAnalysis {
   }
   CholmodSolver(const CholmodSolver&) = delete;
   CholmodSolver& operator=(const CholmodSolver&) = delete;
-
-  double* values() override { return values_.data(); }
 
   bool factor() override {
     // LAPACK's Cholesky, inside the supernodal code, lets NaN pass: no pivot compares as negative.
@@ -61,7 +59,6 @@ class CholmodSolver final : public SpdSolver, CholmodAnalysis {
 
  private:
   SymmetricPattern pattern_;
-  std::vector<double> values_;
   cholmod_sparse matrix_{};
   cholmod_dense rhs_{};
   cholmod_dense *solution_ = nullptr, *y_ = nullptr, *e_ = nullptr;  // reused by cholmod_solve2

@@ -23,8 +23,8 @@ constexpr double singular_rcond = 1e-15;
 class UmfpackSolver final : public UnsymmetricSolver {
  public:
   explicit UmfpackSolver(SymmetricPattern pattern)
-      : pattern_(std::move(pattern)),
-        values_(pattern_.entries()),
+      : UnsymmetricSolver(pattern.entries()),
+        pattern_(std::move(pattern)),
         solution_(pattern_.n),
         int_work_(pattern_.n),
         work_(5 * solution_.size()) {
@@ -38,8 +38,6 @@ class UmfpackSolver final : public UnsymmetricSolver {
   }
   UmfpackSolver(const UmfpackSolver&) = delete;
   UmfpackSolver& operator=(const UmfpackSolver&) = delete;
-
-  double* values() override { return values_.data(); }
 
   bool factor() override {
     if (!std::all_of(values_.begin(), values_.end(), [](double v) { return std::isfinite(v); }))
@@ -71,7 +69,7 @@ class UmfpackSolver final : public UnsymmetricSolver {
 
  private:
   SymmetricPattern pattern_;
-  std::vector<double> values_, solution_;
+  std::vector<double> solution_;
   std::vector<int> int_work_;
   std::vector<double> work_;
   std::array<double, UMFPACK_CONTROL> control_{};
@@ -83,9 +81,13 @@ class UmfpackSolver final : public UnsymmetricSolver {
 class TridiagonalLuSolver final : public UnsymmetricSolver {
  public:
   explicit TridiagonalLuSolver(int n)
-      : n_(n), values_(3 * n - 2), lower_(n), diagonal_(n), upper_(n), upper2_(n), pivot_(n) {}
-
-  double* values() override { return values_.data(); }
+      : UnsymmetricSolver(3 * n - 2),
+        n_(n),
+        lower_(n),
+        diagonal_(n),
+        upper_(n),
+        upper2_(n),
+        pivot_(n) {}
 
   bool factor() override {
     double largest = 0;
@@ -120,7 +122,7 @@ class TridiagonalLuSolver final : public UnsymmetricSolver {
 
  private:
   int n_;
-  std::vector<double> values_, lower_, diagonal_, upper_, upper2_;
+  std::vector<double> lower_, diagonal_, upper_, upper2_;
   std::vector<int> pivot_;
 };
 

@@ -10,17 +10,20 @@ namespace inextensible {
 
 class UnsymmetricSolver {
  public:
-  UnsymmetricSolver() = default;
+  explicit UnsymmetricSolver(int entries) : values_(entries) {}
   virtual ~UnsymmetricSolver() = default;
   UnsymmetricSolver(const UnsymmetricSolver&) = delete;
   UnsymmetricSolver& operator=(const UnsymmetricSolver&) = delete;
 
-  virtual double* values() = 0;         // in the pattern's order
+  double* values() { return values_.data(); }  // in the pattern's order
   virtual bool factor() = 0;            // false: singular to working precision, or not finite
   virtual void solve(double* rhs) = 0;  // overwritten by the solution; after a successful factor()
   virtual double reciprocal_condition() const = 0;  // an estimate from the pivots
   virtual double factor_nonzeros() const = 0;       // of L + U
   virtual double factor_flops() const = 0;
+
+ protected:
+  std::vector<double> values_;
 };
 
 // The pattern has both triangles. Tridiagonal ones get the tridiagonal solver.

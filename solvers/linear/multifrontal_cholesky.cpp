@@ -318,7 +318,7 @@ std::size_t square(std::size_t n) { return n * n; }
 
 template <class Real>
 MultifrontalCholesky<Real>::MultifrontalCholesky(SymmetricPattern pattern)
-    : pattern_(std::move(pattern)), values_(pattern_.entries()), pivots_(pattern_.n) {
+    : SpdSolver(pattern.entries()), pattern_(std::move(pattern)), pivots_(pattern_.n) {
   if (pattern_.triangle != SymmetricPattern::Triangle::lower)
     throw std::invalid_argument("multifrontal reads the lower triangle");
   find_fronts();

@@ -34,7 +34,6 @@ class MultifrontalCholesky final : public SpdSolver {
   // memory.
   explicit MultifrontalCholesky(SymmetricPattern pattern);
 
-  double* values() override { return values_.data(); }
   bool factor() override;
   void solve(double* rhs) override;
   void solve_coordinates(Eigen::Matrix4Xd& rhs) override;
@@ -72,7 +71,6 @@ class MultifrontalCholesky final : public SpdSolver {
   void substitute(Real* rhs);
 
   SymmetricPattern pattern_;
-  std::vector<double> values_;
   std::vector<Front> fronts_;     // in elimination order
   std::vector<int> rows_;         // of the matrix, below each front's own columns, ascending
   std::vector<int> entry_place_;  // of A's entries in their front's columns

@@ -15,12 +15,12 @@ namespace inextensible {
 // The matrix is factored in its own order; permute it first (fill_reducing_order).
 class SpdSolver {
  public:
-  SpdSolver() = default;
+  explicit SpdSolver(int entries = 0) : values_(entries) {}
   virtual ~SpdSolver() = default;
   SpdSolver(const SpdSolver&) = delete;
   SpdSolver& operator=(const SpdSolver&) = delete;
 
-  virtual double* values() = 0;  // entries() numbers, in the pattern's order
+  virtual double* values() { return values_.data(); }  // in the pattern's order
   // false: not finite, or a pivot of L D L^T is not above least_pivot times the diagonal entry that
   // it came from. (The supernodal code takes any positive pivot.)
   virtual bool factor() = 0;
@@ -45,6 +45,7 @@ class SpdSolver {
   virtual double factor_flops() const = 0;  // of one factorization
 
  protected:
+  std::vector<double> values_;
   double least_pivot_ = 0;
 
  private:

@@ -27,7 +27,6 @@ constexpr bool fills = true, as_is = false;
 // For a problem without constraints or free vertices: not all libraries accept empty matrices.
 class NoEquations : public SpdSolver {
  public:
-  double* values() override { return nullptr; }
   bool factor() override { return true; }
   void solve(double* /*rhs*/) override {}
   double reciprocal_condition() const override { return 1; }

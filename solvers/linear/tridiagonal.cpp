@@ -37,16 +37,16 @@ bool eliminate_from_both_ends(std::size_t rows, Pivot pivot, Down down, Up up) {
   return pivot(j, from_above + from_below);
 }
 
+// The values are d_0, (e_1, d_1), (e_2, d_2), ...
 class TridiagonalSolver final : public SpdSolver {
  public:
   explicit TridiagonalSolver(const SymmetricPattern& pattern)
-      : n_(pattern.n), values_(pattern.entries()), l_(n_), inverse_d_(n_) {
+      : SpdSolver(pattern.entries()), n_(pattern.n), l_(n_), inverse_d_(n_) {
     if (!pattern.chain(1) || pattern.triangle != SymmetricPattern::Triangle::upper) {
       throw std::invalid_argument(
           "the linear solver 'tridiagonal' needs constraints that form one chain in order");
     }
   }
-  double* values() override { return values_.data(); }
 
   bool factor() override {
     const auto pivot = [&](std::size_t row, double lost) {
@@ -103,8 +103,7 @@ class TridiagonalSolver final : public SpdSolver {
 
  private:
   std::size_t n_;
-  std::vector<double> values_;  // upper triangle: d_0, (e_1, d_1), (e_2, d_2), ...
-  std::vector<double> l_;       // the factor's entry between rows i - 1 and i, i from 1 on
+  std::vector<double> l_;  // the factor's entry between rows i - 1 and i, i from 1 on
   std::vector<double> inverse_d_;
 };
 
@@ -193,13 +192,12 @@ struct Row {
 class BlockTridiagonalSolver final : public SpdSolver {
  public:
   explicit BlockTridiagonalSolver(const SymmetricPattern& pattern)
-      : values_(pattern.entries()), rows_(pattern.n / 3) {
+      : SpdSolver(pattern.entries()), rows_(pattern.n / 3) {
     if (!pattern.chain(3) || pattern.triangle != SymmetricPattern::Triangle::upper) {
       throw std::invalid_argument(
           "the linear solver 'block_tridiagonal' needs vertices that form one chain in order");
     }
   }
-  double* values() override { return values_.data(); }
 
   bool factor() override {
     static constexpr std::size_t column[3] = {0, 4, 9};  // of row_values
@@ -274,7 +272,6 @@ class BlockTridiagonalSolver final : public SpdSolver {
   }
 
  private:
-  std::vector<double> values_;
   std::vector<Row> rows_;
 };
 

@@ -102,11 +102,7 @@ class Admm final : public VelocityFilter {
       add(a, b, -weight_[k]);
     }
     ++work.assemblies;
-    ++work.factorizations;
-    factored_ = matrix_.solver->factor();
-    work.factor_nonzeros = matrix_.solver->factor_nonzeros();
-    work.factor_flops = matrix_.solver->factor_flops();
-    return factored_;
+    return factored_ = factor_counted(*matrix_.solver, work);
   }
 
   // u from the last accepted step's forces, and x where these would take the candidate.

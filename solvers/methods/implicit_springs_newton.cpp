@@ -155,13 +155,10 @@ StepResult ImplicitSprings::newton(double h, double current, Positions& x) {
       work_.spring_evaluations += static_cast<std::int64_t>(hessian_.springs.size());
     } else {
       ++work_.assemblies;
-      ++work_.factorizations;
-      if (!hessian_.matrix.solver->factor()) {
+      if (!factor_counted(*hessian_.matrix.solver, work_)) {
         return {std::isfinite(current) ? Status::singular : Status::not_finite, j, -1, 0,
                 "the Newton matrix is singular"};
       }
-      work_.factor_nonzeros = hessian_.matrix.solver->factor_nonzeros();
-      work_.factor_flops = hessian_.matrix.solver->factor_flops();
     }
     step_ = -gradient_;
     hessian_.matrix.solver->solve(

@@ -128,8 +128,8 @@ class GaussSeidel final : public VelocityFilter {
   std::uint64_t random_;  // SplitMix64 state
 };
 
-// Passes over colored edges until one finds nothing to correct, which is the test of convergence
-// and is not counted: it has seen every edge in its final place.
+// Passes over colored edges until one, which has seen every edge in its final place, finds nothing
+// to correct.
 class PassLimiter final : public VelocityFilter {
  public:
   PassLimiter(const Problem& problem, const BackendOptions& options, Along along,

@@ -209,9 +209,9 @@ std::int64_t YarnPass::project(const View& yarns, WorkCounters& work) {
   return static_cast<std::int64_t>(all);
 }
 
-template <bool contact, bool middle>
-std::int64_t YarnPass::project_all(ColoredEdges::Places& x, const ColoredEdges::Places* normals,
-                                   WorkCounters& work) {
+std::int64_t YarnPass::project(ColoredEdges::Places& x, const ColoredEdges::Places* normals,
+                               WorkCounters& work) {
+  const bool middle = !start_g_.empty();
   std::int64_t violated = 0;
   for (const Bundle& bundle : bundles_) {
     const std::size_t first = static_cast<std::size_t>(bundle.first) * lanes;
@@ -223,22 +223,16 @@ std::int64_t YarnPass::project_all(ColoredEdges::Places& x, const ColoredEdges::
                middle ? start_g_.data() + 3 * first : nullptr,
                {x.col(0).data(), x.col(1).data(), x.col(2).data()},
                {}};
-    if constexpr (contact) {
-      for (int axis = 0; axis < 3; ++axis) yarns.normal[axis] = normals->col(axis).data();
-    }
-    violated += bundle.yarns == 1 ? project<1, contact, middle>(yarns, work)
-                                  : project<lanes, contact, middle>(yarns, work);
+    for (int axis = 0; normals && axis < 3; ++axis) yarns.normal[axis] = normals->col(axis).data();
+    const auto project_by = [&]<int used>() {
+      return normals ? (middle ? project<used, true, true>(yarns, work)
+                               : project<used, true, false>(yarns, work))
+                     : (middle ? project<used, false, true>(yarns, work)
+                               : project<used, false, false>(yarns, work));
+    };
+    violated += bundle.yarns == 1 ? project_by.operator()<1>() : project_by.operator()<lanes>();
   }
   return violated;
-}
-
-std::int64_t YarnPass::project(ColoredEdges::Places& x, const ColoredEdges::Places* normals,
-                               WorkCounters& work) {
-  const auto all = [&]<bool middle>() {
-    return normals ? project_all<true, middle>(x, normals, work)
-                   : project_all<false, middle>(x, normals, work);
-  };
-  return start_g_.empty() ? all.operator()<false>() : all.operator()<true>();
 }
 
 }  // namespace inextensible

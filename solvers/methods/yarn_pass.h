@@ -50,9 +50,6 @@ class YarnPass {
     int links, first, yarns;  // first: row of vertices and links in the arrays below
   };
   void add_bundle(const Problem& problem, std::span<const Yarn> yarns);
-  template <bool contact, bool middle>
-  std::int64_t project_all(ColoredEdges::Places& x, const ColoredEdges::Places* normals,
-                           WorkCounters& work);
   struct View;  // of a bundle and the positions
   template <int used, bool contact, bool middle>
   std::int64_t project(const View& yarns, WorkCounters& work);

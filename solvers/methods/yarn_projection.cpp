@@ -203,7 +203,7 @@ class YarnProjection final : public VelocityFilter {
       cost += round;
       if (done.left == 0) {
         passes_.store(x);
-        if (whole_ && !stops && x.find_contacts(work) > 0) {
+        if (whole_ && !stops && x.contacts() && x.contacts()->find(x, work) > 0) {
           passes_.load(x);
           continue;
         }

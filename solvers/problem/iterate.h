@@ -29,8 +29,6 @@ class Iterate {
   void renew_planes(WorkCounters& work) const {
     if (contacts_) contacts_->update(*x_, work);
   }
-  // Adds contacts for vertices that are inside the obstacle; returns how many are inside.
-  int find_contacts(WorkCounters& work) const { return contacts_ ? contacts_->find(*x_, work) : 0; }
 
   // The positions without what planes have pushed, to `to` (3 x n).
   void without_pushes(Positions& to) const {

@@ -151,7 +151,7 @@ void TriangleCollider::lay_out_grid() {
   inverse_cell_size_ = cell_size_.cwiseInverse();
   for (int f = 0; f < triangles(); ++f) {
     const Vector3d& normal = pseudonormal_[f][0];
-    planes_.push_back({normal.x(), normal.y(), normal.z(), normal.dot(corner(mesh_, f, 0))});
+    planes_.emplace_back(normal.x(), normal.y(), normal.z(), normal.dot(corner(mesh_, f, 0)));
   }
   std::vector<int> all(triangles());
   std::iota(all.begin(), all.end(), 0);
@@ -264,8 +264,8 @@ int TriangleCollider::least_behind(std::span<const int> list, const Vector3d& p,
   distance = -std::numeric_limits<double>::infinity();
   int nearest = list[0];
   for (const int triangle : list) {
-    const Plane& t = planes_[triangle];
-    const double here = t.x * px + t.y * py + t.z * pz - t.offset;
+    const double* t = planes_[triangle].data();
+    const double here = t[0] * px + t[1] * py + t[2] * pz - t[3];
     if (here > distance) {
       distance = here;
       nearest = triangle;
@@ -284,11 +284,10 @@ bool TriangleCollider::touches(std::span<const int> list, const Vector3d& p, dou
     return true;
   }
   double distance = 0;
-  const Plane& t = planes_[least_behind(list, p, distance)];
-  witness << t.x, t.y, t.z, t.offset;
+  witness = planes_[least_behind(list, p, distance)];
   if (!(distance < -depth)) return false;
-  plane.normal = {t.x, t.y, t.z};
-  plane.offset = t.offset;
+  plane.normal = witness.head<3>();
+  plane.offset = witness[3];
   return true;
 }
 
@@ -302,9 +301,8 @@ void TriangleCollider::show_outside(const Vector3d& p, Memory::RowXpr witness,
     witness[axis] = above ? 1 : -1;
   } else if (convex_) {
     double distance = 0;
-    const Plane& t = planes_[least_behind(lists_[deep], p, distance)];
+    witness = planes_[least_behind(lists_[deep], p, distance)];
     work.triangle_tests += triangles();
-    witness << t.x, t.y, t.z, t.offset;
   }
 }
 
@@ -339,13 +337,13 @@ bool TriangleCollider::plane_at(const Vector3d& p, ContactPlane& plane, WorkCoun
   work.triangle_tests += std::ssize(list);
   if (convex_) {
     const auto behind = [&](int triangle) {
-      const Plane& t = planes_[triangle];
-      return t.offset - t.x * p.x() - t.y * p.y() - t.z * p.z();
+      const double* t = planes_[triangle].data();
+      return t[3] - t[0] * p.x() - t[1] * p.y() - t[2] * p.z();
     };
-    const Plane& least = planes_[*std::min_element(
+    const Eigen::RowVector4d& least = planes_[*std::min_element(
         list.begin(), list.end(), [&](int s, int t) { return behind(s) < behind(t); })];
-    plane.normal = {least.x, least.y, least.z};
-    plane.offset = least.offset;
+    plane.normal = least.head<3>();
+    plane.offset = least[3];
     return true;
   }
   const Nearest nearest = nearest_among(list, p);

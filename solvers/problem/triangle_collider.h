@@ -36,6 +36,7 @@ class TriangleCollider final : public Collider {
   bool plane_at(const Eigen::Vector3d& p, ContactPlane& plane, WorkCounters& work) const override;
   double friction() const override { return friction_; }
   int triangles() const override { return static_cast<int>(mesh_.triangles.size()); }
+  const TriangleMesh& mesh() const { return mesh_; }
 
   struct Nearest {
     Eigen::Vector3d point;   // on the mesh, m
@@ -59,9 +60,6 @@ class TriangleCollider final : public Collider {
   void check_orientation();
   void lay_out_grid();
   void refine(const Eigen::Vector3i& cell, int size, const std::vector<int>& candidates);
-  struct Plane {  // n . p - offset
-    double x, y, z, offset;
-  };
   // Whether p, of a cell that is not outside, is deeper than `depth` inside the mesh; if so,
   // `plane` keeps it out. Of a convex mesh `witness` is the plane that shows that it is not, or
   // will once it has pushed it out.
@@ -83,9 +81,9 @@ class TriangleCollider final : public Collider {
   bool convex_ = false;
   std::vector<std::array<Eigen::Vector3d, 7>> pseudonormal_;  // per triangle, by feature
   Eigen::Vector3d low_, cell_size_, inverse_cell_size_;
-  std::vector<int> cell_;                // its list, or outside
-  std::vector<std::vector<int>> lists_;  // triangles
-  std::vector<Plane> planes_;            // of the faces
+  std::vector<int> cell_;                   // its list, or outside
+  std::vector<std::vector<int>> lists_;     // triangles
+  std::vector<Eigen::RowVector4d> planes_;  // of the faces: normal and offset
 };
 
 }  // namespace inextensible

@@ -28,6 +28,16 @@ struct WorkCounters {
   bool operator==(const WorkCounters&) const = default;
 };
 
+// Factors what is in the solver, and counts that.
+template <class Solver>
+bool factor_counted(Solver& solver, WorkCounters& work) {
+  ++work.factorizations;
+  if (!solver.factor()) return false;
+  work.factor_nonzeros = solver.factor_nonzeros();
+  work.factor_flops = solver.factor_flops();
+  return true;
+}
+
 // What files, gates, schemas and `bench list counters` know of a counter.
 struct WorkCounterInfo {
   const char* name;

@@ -135,7 +135,6 @@ class ChainKkt final : public KktSolver {
     }
   }
 
-  // A matrix that elimination in this order cannot take is left to UMFPACK.
   std::unique_ptr<KktSolver> make_other() const override {
     return make_kkt_system(problem_, edges_, FactoredBy::umfpack);
   }
@@ -193,9 +192,12 @@ class ChainKkt final : public KktSolver {
 
   bool solve_itself(const Positions& r, const Eigen::VectorXd& c, Positions& p, Eigen::VectorXd& q,
                     WorkCounters& work) override {
-    r_ = r;
-    for (const int vertex : problem_.pinned()) r_.col(vertex).setZero();
-    c_ = c;
+    const auto begin_again = [&] {
+      r_ = r;
+      for (const int vertex : problem_.pinned()) r_.col(vertex).setZero();
+      c_ = c;
+    };
+    begin_again();
     const double scale = std::sqrt(r_.squaredNorm() + c_.squaredNorm());
     p.setZero();
     q.setZero();
@@ -208,9 +210,7 @@ class ChainKkt final : public KktSolver {
       p += correction_p_;
       q += correction_q_;
       const double last = error;
-      r_ = r;
-      for (const int vertex : problem_.pinned()) r_.col(vertex).setZero();
-      c_ = c;
+      begin_again();
       error = subtract_product(p, q);
       if (!(error < 0.5 * last)) break;
     }

@@ -40,11 +40,7 @@ bool ConstraintSystem::factor(const Eigen::Matrix3Xd& u, const Contacts* contact
   for (int k = 0; damping > 0 && k < pattern.n; ++k) values[pattern.diagonal(k)] *= 1 + damping;
   if (contacts) schur_->subtract_contacts(*contacts, u, u, values);
   ++work.assemblies;
-  ++work.factorizations;
-  const bool factored = solver_->factor();
-  work.factor_nonzeros = solver_->factor_nonzeros();
-  work.factor_flops = solver_->factor_flops();
-  return factored;
+  return factor_counted(*solver_, work);
 }
 
 bool ConstraintSystem::solve(Eigen::VectorXd& mu, WorkCounters& work, double tolerance) {

@@ -1,16 +1,62 @@
 #include "solvers/systems/kkt_system.h"
 
+#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "solvers/linear/lu.h"
-#include "solvers/linear/quasi_definite.h"
 
 namespace inextensible {
 namespace {
 
 constexpr double regularization = 1e-10;  // relative to J W J^T, of order one after scaling
 constexpr int refinement_limit = 8;
+
+// L D L^T of a sparse quasi-definite matrix in its own order, by Eigen's up-looking code. Such a
+// matrix has negative pivots, and is factored without pivoting in any order (Vanderbei 1995).
+class QuasiDefiniteSolver {
+ public:
+  explicit QuasiDefiniteSolver(const SymmetricPattern& upper_triangle) {
+    const std::vector<double> zeros(upper_triangle.entries(), 0.0);
+    matrix_ = Eigen::Map<const Eigen::SparseMatrix<double>>(
+        upper_triangle.n, upper_triangle.n, upper_triangle.entries(),
+        upper_triangle.column_start.data(), upper_triangle.row_index.data(), zeros.data());
+    ldlt_.analyzePattern(matrix_);
+  }
+  double* values() { return matrix_.valuePtr(); }  // in the pattern's order
+  // false: a pivot is zero or not finite.
+  bool factor() {
+    ldlt_.factorize(matrix_);
+    return ldlt_.info() == Eigen::Success && ldlt_.d().allFinite();
+  }
+  // Overwrites the right-hand side by the solution.
+  void solve(double* rhs) const {
+    Eigen::Map<Eigen::VectorXd> x(rhs, ldlt_.d().size());
+    ldlt_.matrixL().solveInPlace(x);
+    x.array() /= ldlt_.d().array();
+    ldlt_.matrixU().solveInPlace(x);
+  }
+  // From the last factorization: the matrix's negative eigenvalues (Sylvester's law of inertia).
+  int negative_pivots() const { return static_cast<int>((ldlt_.d().array() < 0).count()); }
+  double reciprocal_condition() const {  // smallest over largest pivot
+    const auto pivots = ldlt_.d().array().abs();
+    return pivots.minCoeff() / pivots.maxCoeff();
+  }
+  double factor_nonzeros() const { return ldlt_.nonzeros(); }
+  double factor_flops() const { return ldlt_.flops(); }
+
+ private:
+  struct Ldlt : Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Upper,
+                                      Eigen::NaturalOrdering<int>> {
+    // vectorD() returns a copy, and so allocates.
+    const VectorType& d() const { return m_diag; }
+    double nonzeros() const { return (m_nonZerosPerCol.array().cast<double>() + 1).sum(); }
+    double flops() const { return (m_nonZerosPerCol.array().cast<double>() + 1).square().sum(); }
+  };
+
+  Eigen::SparseMatrix<double> matrix_;
+  Ldlt ldlt_;
+};
 
 class KktSystem final : public KktSolver {
  public:
@@ -26,11 +72,7 @@ class KktSystem final : public KktSolver {
     multiplier_offset_ = 3 * static_cast<int>(scaled_mass_.size());
     size_ = multiplier_offset_ + edges.count();
 
-    std::vector<Edge> ends(edges.count());
-    for (std::size_t k = 0; k < ends.size(); ++k) {
-      ends[k] = {vertex_unknown_[edges.a[k]], vertex_unknown_[edges.b[k]]};
-    }
-    build_pattern(ends);
+    build_pattern();
     for (Eigen::VectorXd* v : {&rhs_, &solution_, &residual_}) v->resize(size_);
     if (!umfpack_only_) ldlt_ = std::make_unique<QuasiDefiniteSolver>(pattern_);
   }
@@ -40,15 +82,22 @@ class KktSystem final : public KktSolver {
     int coupling[3], at_a[3], at_b[3];
   };
 
-  void build_pattern(const std::vector<Edge>& ends) {
+  int unknown(int vertex, int axis) const {  // -1 if pinned
+    const int first = vertex_unknown_[vertex];
+    return first < 0 ? -1 : first + axis;
+  }
+
+  void build_pattern() {
     Pairs pairs;  // of unknowns
-    for (std::size_t k = 0; k < ends.size(); ++k) {
-      const int multiplier = multiplier_offset_ + static_cast<int>(k);
+    const auto couple = [&](int i, int j) {
+      if (i >= 0 && j >= 0) pairs.emplace_back(i, j);
+    };
+    for (int k = 0; k < edges_.count(); ++k) {
       for (int axis = 0; axis < 3; ++axis) {
-        const int a = ends[k].a + axis, b = ends[k].b + axis;
-        if (ends[k].a >= 0) pairs.emplace_back(a, multiplier);
-        if (ends[k].b >= 0) pairs.emplace_back(b, multiplier);
-        if (ends[k].a >= 0 && ends[k].b >= 0) pairs.emplace_back(a, b);
+        const int a = unknown(edges_.a[k], axis), b = unknown(edges_.b[k], axis);
+        couple(a, multiplier_offset_ + k);
+        couple(b, multiplier_offset_ + k);
+        couple(a, b);
       }
     }
     const auto upper = SymmetricPattern::Triangle::upper;
@@ -59,25 +108,24 @@ class KktSystem final : public KktSolver {
     pattern_ = pattern_of(size_, pairs, upper);
     matrix_.resize(pattern_.entries());
 
-    const auto entry = [&](int i, int j) { return pattern_.place(place_[i], place_[j]); };
+    const auto entry = [&](int i, int j) {
+      return i >= 0 && j >= 0 ? pattern_.place(place_[i], place_[j]) : -1;
+    };
     for (int i = 0; i < size_; ++i) diagonal_.push_back(entry(i, i));
-    edge_places_.resize(ends.size());
-    for (std::size_t k = 0; k < ends.size(); ++k) {
-      const int multiplier = multiplier_offset_ + static_cast<int>(k);
-      EdgePlaces& places = edge_places_[k];
+    edge_places_.resize(edges_.count());
+    for (int k = 0; k < edges_.count(); ++k) {
       for (int axis = 0; axis < 3; ++axis) {
-        const int a = ends[k].a + axis, b = ends[k].b + axis;
-        places.at_a[axis] = ends[k].a >= 0 ? entry(a, multiplier) : -1;
-        places.at_b[axis] = ends[k].b >= 0 ? entry(b, multiplier) : -1;
-        places.coupling[axis] = ends[k].a >= 0 && ends[k].b >= 0 ? entry(a, b) : -1;
+        const int a = unknown(edges_.a[k], axis), b = unknown(edges_.b[k], axis);
+        edge_places_[k].at_a[axis] = entry(a, multiplier_offset_ + k);
+        edge_places_[k].at_b[axis] = entry(b, multiplier_offset_ + k);
+        edge_places_[k].coupling[axis] = entry(a, b);
       }
     }
   }
 
   void assemble() {
     std::fill(matrix_.begin(), matrix_.end(), 0.0);
-    const auto at = [this](int i) -> double& { return matrix_[i]; };
-    for (int i = 0; i < multiplier_offset_; ++i) at(diagonal_[i]) = scaled_mass_[i / 3];
+    for (int i = 0; i < multiplier_offset_; ++i) matrix_[diagonal_[i]] = scaled_mass_[i / 3];
     for (std::size_t k = 0; k < edge_places_.size(); ++k) {
       const EdgePlaces& places = edge_places_[k];
       const double curved = curvature(static_cast<Eigen::Index>(k));
@@ -86,14 +134,14 @@ class KktSystem final : public KktSolver {
       for (int axis = 0; axis < 3; ++axis) {
         const double gradient = (*u_)(axis, static_cast<Eigen::Index>(k));
         if (a >= 0) {
-          at(diagonal_[a + axis]) += curved;
-          at(places.at_a[axis]) -= gradient;
+          matrix_[diagonal_[a + axis]] += curved;
+          matrix_[places.at_a[axis]] -= gradient;
         }
         if (b >= 0) {
-          at(diagonal_[b + axis]) += curved;
-          at(places.at_b[axis]) += gradient;
+          matrix_[diagonal_[b + axis]] += curved;
+          matrix_[places.at_b[axis]] += gradient;
         }
-        if (a >= 0 && b >= 0) at(places.coupling[axis]) -= curved;
+        if (a >= 0 && b >= 0) matrix_[places.coupling[axis]] -= curved;
       }
     }
   }
@@ -108,10 +156,7 @@ class KktSystem final : public KktSolver {
       std::copy(matrix_.begin(), matrix_.end(), ldlt_->values());
       for (int i = multiplier_offset_; i < size_; ++i)
         ldlt_->values()[diagonal_[i]] = -regularization;
-      ++work.factorizations;
-      if (!ldlt_->factor()) return factor_umfpack(work);
-      work.factor_nonzeros = ldlt_->factor_nonzeros();
-      work.factor_flops = ldlt_->factor_flops();
+      if (!factor_counted(*ldlt_, work)) return factor_umfpack(work);
       if (convex_ || ldlt_->negative_pivots() == edges_.count()) return true;
     }
   }
@@ -134,11 +179,7 @@ class KktSystem final : public KktSolver {
     for (std::size_t i = 0; i < full_from_upper_.size(); ++i) {
       lu_->values()[i] = matrix_[full_from_upper_[i]];
     }
-    ++work.factorizations;
-    if (!lu_->factor()) return false;
-    work.factor_nonzeros = lu_->factor_nonzeros();
-    work.factor_flops = lu_->factor_flops();
-    return true;
+    return factor_counted(*lu_, work);
   }
 
   void residual() {  // residual_ = rhs_ - K solution_
@@ -158,12 +199,9 @@ class KktSystem final : public KktSolver {
 
   bool solve_itself(const Positions& r, const Eigen::VectorXd& c, Positions& p, Eigen::VectorXd& q,
                     WorkCounters& work) override {
-    for (std::size_t v = 0; v < vertex_unknown_.size(); ++v) {
-      const int first = vertex_unknown_[v];
-      if (first < 0) continue;
-      for (int axis = 0; axis < 3; ++axis) {
-        rhs_[place_[first + axis]] = r(axis, static_cast<Eigen::Index>(v));
-      }
+    for (int v = 0; v < problem_.vertices(); ++v) {
+      for (int axis = 0; axis < 3; ++axis)
+        if (const int i = unknown(v, axis); i >= 0) rhs_[place_[i]] = r(axis, v);
     }
     for (Eigen::Index k = 0; k < c.size(); ++k) rhs_[place_[multiplier_offset_ + k]] = c[k];
 
@@ -173,30 +211,22 @@ class KktSystem final : public KktSolver {
       residual_ = rhs_;
       double error = scale;
       for (int i = 0; i < refinement_limit && error > refinement_goal * scale; ++i) {
-        if (using_umfpack_) {
-          lu_->solve(residual_.data());
-        } else {
-          ldlt_->solve(residual_.data());
-        }
+        using_umfpack_ ? lu_->solve(residual_.data()) : ldlt_->solve(residual_.data());
         ++work.back_solves;
         solution_ += residual_;
         residual();
-        const double next = residual_.norm();
-        if (!(next < 0.5 * error) && i > 0) {
-          error = next;
-          break;
-        }
-        error = next;
+        const double last = error;
+        error = residual_.norm();
+        if (!(error < 0.5 * last) && i > 0) break;
       }
       if (error <= acceptable_residual * scale) break;  // false on NaN
       if (using_umfpack_ || !factor_umfpack(work)) return false;
     }
 
-    for (std::size_t v = 0; v < vertex_unknown_.size(); ++v) {
-      const int first = vertex_unknown_[v];
-      for (int axis = 0; axis < 3; ++axis) {
-        p(axis, static_cast<Eigen::Index>(v)) = first < 0 ? 0 : solution_[place_[first + axis]];
-      }
+    p.setZero();
+    for (int v = 0; v < problem_.vertices(); ++v) {
+      for (int axis = 0; axis < 3; ++axis)
+        if (const int i = unknown(v, axis); i >= 0) p(axis, v) = solution_[place_[i]];
     }
     for (Eigen::Index k = 0; k < c.size(); ++k) q[k] = solution_[place_[multiplier_offset_ + k]];
     return true;

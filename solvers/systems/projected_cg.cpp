@@ -69,11 +69,7 @@ class ProjectedCg final : public KktSolver {
     schur_.assemble(*u_, solver_->values());
     if (touches()) schur_.subtract_contacts(*contacts_, *u_, *u_, solver_->values());
     ++work.assemblies;
-    ++work.factorizations;
-    if (!solver_->factor()) return false;
-    work.factor_nonzeros = solver_->factor_nonzeros();
-    work.factor_flops = solver_->factor_flops();
-    return true;
+    return factor_counted(*solver_, work);
   }
 
   // Knows no contacts: its steps may leave their planes.

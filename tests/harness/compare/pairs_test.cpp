@@ -18,16 +18,10 @@ ComparedPoint printed(double seconds, const std::string& status = "ok") {
   return point;
 }
 
-using Answer = std::function<ComparedPoint(Side side, const std::string& name)>;
-
-RunOne running(const Answer& answer) {
-  return [answer](Side side, const PairedPoint& point) { return answer(side, point.spec); };
-}
-
-Comparison compared(const std::vector<std::string>& names, const Answer& answer) {
+Comparison compared(const std::vector<std::string>& names, const RunOne& run) {
   std::vector<PairedPoint> points;
   for (const std::string& name : names) points.push_back({json(name)});
-  return compare_in_pairs(std::move(points), 15, 25, {}, {}, running(answer));
+  return compare_in_pairs(std::move(points), 15, 25, {}, {}, run);
 }
 
 // A machine whose speed wanders, and now and then drops for a while.
@@ -51,10 +45,10 @@ class Machine {
 TEST(RunPairs, TakesTurnsInComingFirst) {
   std::vector<PairedPoint> points{{json("a")}, {json("b")}};
   std::string order;
-  run_pairs({&points[0], &points[1]}, 3, running([&order](Side side, const std::string& name) {
-              order += (side == Side::old_one ? "A" : "B") + name + " ";
-              return printed(1);
-            }));
+  run_pairs({&points[0], &points[1]}, 3, [&order](Side side, const PairedPoint& point) {
+    order += (side == Side::old_one ? "A" : "B") + point.spec.get<std::string>() + " ";
+    return printed(1);
+  });
   EXPECT_EQ(order, "Aa Ba Ab Bb Ba Aa Bb Ab Aa Ba Ab Bb ");
   EXPECT_EQ(points[0].before.samples.size(), 3u);
   EXPECT_EQ(points[1].after.samples, (std::vector<double>{1, 1, 1}));  // the least of each process
@@ -63,10 +57,10 @@ TEST(RunPairs, TakesTurnsInComingFirst) {
 TEST(RunPairs, LeavesAPointThatFailedAlone) {
   PairedPoint point{json("a")};
   int runs = 0;
-  run_pairs({&point}, 5, running([&runs](Side side, const std::string&) {
-              const bool fails = side == Side::new_one && ++runs > 1;  // a later process
-              return printed(1, fails ? "crashed" : "ok");
-            }));
+  run_pairs({&point}, 5, [&runs](Side side, const PairedPoint&) {
+    const bool fails = side == Side::new_one && ++runs > 1;  // a later process
+    return printed(1, fails ? "crashed" : "ok");
+  });
   EXPECT_EQ(runs, 2);
   EXPECT_TRUE(point.before.ok());
   EXPECT_EQ(point.after.status, "crashed");
@@ -85,8 +79,8 @@ TEST(CompareInPairs, FindsWhatHasBecomeSlowerByAFifth) {
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     Machine machine(seed);
-    const auto comparison = compared({"a", "b"}, [&](Side side, const std::string& name) {
-      return printed(machine.time(side == Side::new_one && name == "b" ? 1.2 : 1.0));
+    const auto comparison = compared({"a", "b"}, [&](Side side, const PairedPoint& point) {
+      return printed(machine.time(side == Side::new_one && point.spec == "b" ? 1.2 : 1.0));
     });
     EXPECT_TRUE(comparison.points[0].change == Change::same ||
                 comparison.points[0].change == Change::ambiguous);
@@ -98,7 +92,7 @@ TEST(CompareInPairs, FindsWhatHasBecomeSlowerByAFifth) {
 // Slow in the first look only, as a neighbour's load would have it.
 TEST(CompareInPairs, TimesFoundOnceOnlyAreNoRegression) {
   int runs = 0;
-  const auto comparison = compared({"a"}, [&runs](Side side, const std::string&) {
+  const auto comparison = compared({"a"}, [&runs](Side side, const PairedPoint&) {
     const bool slow = side == Side::new_one && runs < 30;
     return printed((slow ? 1.2 : 1.0) + 1e-4 * (++runs % 7));
   });
@@ -114,7 +108,7 @@ TEST(CompareInPairs, ADoubledTimeIsNeverTheSame) {
   std::mt19937_64 random(1);
   std::lognormal_distribution<double> noise(0, 1.5);
   for (int trial = 0; trial < 20; ++trial) {
-    const PointChange point = compared({"a"}, [&](Side side, const std::string&) {
+    const PointChange point = compared({"a"}, [&](Side side, const PairedPoint&) {
                                 return printed((side == Side::new_one ? 2 : 1) * noise(random));
                               }).points[0];
     EXPECT_NE(point.change, Change::same);
@@ -127,7 +121,7 @@ TEST(CompareInPairs, WhatFailsOnBothSidesIsUndecidedAndWhatFailsBeforeOnlyIsFixe
     const auto both = compared({"a"}, [&](auto&&...) { return printed(1, status); });
     EXPECT_EQ(both.points[0].change, Change::ambiguous) << status;
     EXPECT_TRUE(both.undecided()) << status;
-    const auto old_alone = compared({"a"}, [&](Side side, const std::string&) {
+    const auto old_alone = compared({"a"}, [&](Side side, const PairedPoint&) {
       return printed(1, side == Side::old_one ? status : "ok");
     });
     EXPECT_EQ(old_alone.points[0].change, Change::fixed) << status;

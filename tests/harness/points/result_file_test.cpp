@@ -140,11 +140,10 @@ TEST(Schemas, AreThoseOfCommittedFiles) {
 }
 
 TEST(ResultFile, OfAStabilitySweepFitsItsSchema) {
-  const auto cases = hard_cases(hard_case_values("quick"));
-  StabilityFilters filters;
-  filters.solver = harness::Pattern("--solver", "fast_projection|gauss_seidel");
-  filters.hard_case = harness::Pattern("--case", "^Q1$|^Q4$|door|triangles|largest step taut");
-  const auto outcome = run_stability(plan_stability(cases, filters), 1, {});
+  const StabilityPlan plan =
+      plan_stability("quick", Pattern("--solver", "fast_projection|gauss_seidel"),
+                     Pattern("--case", "^Q1$|^Q4$|door|triangles|largest step taut"));
+  const auto outcome = run_stability(plan, 1, {});
   EXPECT_FALSE(outcome.cells.empty());
   EXPECT_FALSE(outcome.largest_steps.empty());
   EXPECT_FALSE(outcome.freedom.empty());
