@@ -316,7 +316,7 @@ void print_sources(std::ostream& out, const std::vector<NamedResult>& results) {
                                  context.at("build").at("git")};
     if (const auto noise = noise_of(context)) {
       // Excess of the longer time over the shorter one, from |log ratio|.
-      row.insert(row.end(), {quoted(noise->one), std::to_string(noise->places),
+      row.insert(row.end(), {quoted(noise->pair.front()), std::to_string(noise->places),
                              percent(std::expm1(noise->median)), percent(std::expm1(noise->q95))});
     }
     row.resize(table.head.size(), "-");
