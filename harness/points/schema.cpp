@@ -91,8 +91,8 @@ ordered_json schema_document(const std::string& name) {
   ordered_json schema = ordered_json::parse(read_file(path, "schema"));
   if (!schema.contains("definitions")) return schema;
   ordered_json& definitions = schema["definitions"];
-  const auto renew = [&definitions](const char* name, auto made) {
-    if (definitions.contains(name)) definitions[name] = made();
+  const auto renew = [&definitions](const char* part, auto made) {
+    if (definitions.contains(part)) definitions[part] = made();
   };
   renew("status", [] { return ordered_json{{"enum", names_of(point_statuses)}}; });
   renew("counter", [] { return ordered_json{{"enum", counter_names()}}; });

@@ -36,7 +36,7 @@ class NoEquations : public SpdSolver {
 
 // CHOLMOD's supernodal code transposes an upper triangle at every factorization; the up-looking
 // codes a lower one.
-constexpr SpdSolverRow rows[] = {
+constexpr SpdSolverRow table[] = {
     {"tridiagonal", "L D L^T from both ends", upper, Takes::tridiagonal, as_is, Precision::full,
      make_tridiagonal},
     {"block_tridiagonal", "the same of 3 x 3 blocks", upper, Takes::block_tridiagonal, as_is,
@@ -61,12 +61,12 @@ void SpdSolver::solve_coordinates(Eigen::Matrix4Xd& rhs) {
   }
 }
 
-std::span<const SpdSolverRow> spd_solvers() { return rows; }
+std::span<const SpdSolverRow> spd_solvers() { return table; }
 
 const SpdSolverRow& spd_solver(std::string_view name) {
-  const auto place = std::find_if(std::begin(rows), std::end(rows),
+  const auto place = std::find_if(std::begin(table), std::end(table),
                                   [name](const SpdSolverRow& row) { return row.name == name; });
-  if (place == std::end(rows))
+  if (place == std::end(table))
     throw std::invalid_argument("no linear solver '" + std::string(name) + "'");
   return *place;
 }

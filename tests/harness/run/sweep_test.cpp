@@ -62,7 +62,7 @@ TEST(StepSearch, RunsFromCoarseToFineAsLongAsThatIsOfUse) {
       {"until the error stays",
        {.seconds = slowing(1.1),
         .error = [](const PointSpec& spec) { return 0.2 + 0.01 * spec.step; }},
-       {25, 50, 100, 200, 400}},
+       {25, 50, 100, 200, 400, 800}},
       // Several steps lead to the same wrong folds.
       {"past an error that stays for a while",
        {.seconds = slowing(1.3),
