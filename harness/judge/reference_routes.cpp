@@ -22,11 +22,10 @@ using inextensible::State;
 
 namespace {
 
-constexpr double perturbation = 1e-10;             // of a start, over the scene's size
-constexpr double visible_move = 1e-5;              // the same, of a scene that comes to rest
-constexpr int moved_start_count = 2;               // how many disturbed starts a route is run from
-constexpr double surely_known = 0.01 / sure_gaps;  // gap up to which an order is looked for
-constexpr double parted = 1e-2;                    // gap at which a reference ends
+constexpr double perturbation = 1e-10;  // of a start, over the scene's size
+constexpr double visible_move = 1e-5;   // the same, of a scene that comes to rest
+constexpr int moved_start_count = 2;    // how many disturbed starts a route is run from
+constexpr double parted = 1e-2;         // gap at which a reference ends
 constexpr double pendulum_tolerance = 1e-13;
 constexpr std::size_t most_samples = 50;
 constexpr double usual_finest = sample_interval / 640;  // s, of scenes that are no pendulum
@@ -273,7 +272,6 @@ class ReferenceMaker {
     const bool springs = third && h < quick_finest;
     if (springs) parts.push_back({"third_route", &fine, &path(*third, 8 * h)});
     add_gaps(parts);
-    r_.observed_order = order_towards(fine, other, h);
     r_.method = first.name() + ", step " + number_text(h) + " s";
     r_.second_method =
         other.name() +
@@ -334,31 +332,6 @@ class ReferenceMaker {
     for (std::size_t i = 0; i < count; ++i)
       squares += std::pow(rms_distance(scene_, a[i], b[i]), 2);
     return std::sqrt(squares / static_cast<double>(count));
-  }
-
-  // The order with which the second route comes to the first one as its step is halved, from steps
-  // coarse enough to see it: those at which its distance is above the gap. Finer ones are as near
-  // as any two runs come, and differ by chance. Unknown if there are fewer than two.
-  double order_towards(const Path& fine, const Route& second, double h) {
-    std::size_t sure = 0;
-    double gap_squares = 0;
-    for (; sure < std::min(fine.size(), r_.gap.size()) && r_.gap[sure] < surely_known; ++sure)
-      gap_squares += r_.gap[sure] * r_.gap[sure];
-    if (sure == 0) return unknown;
-    const double gap = std::sqrt(gap_squares / static_cast<double>(sure));
-    std::vector<double> halvings, logarithms;
-    for (const int factor : {128, 64, 32, 16, 8, 4}) {
-      const double steps = sample_interval / (factor * h);
-      if (std::abs(steps - std::round(steps)) > 1e-6) continue;  // it would miss the samples
-      const Path& coarse = path(second, factor * h, sure, scene_.start, 0);
-      if (coarse.size() < sure) continue;
-      const double distance = mean_distance(coarse, fine, sure);
-      if (!(distance > sure_gaps * gap)) break;
-      halvings.push_back(-std::log2(factor));
-      logarithms.push_back(-std::log2(distance));
-    }
-    if (halvings.size() < 2) return unknown;
-    return (logarithms.back() - logarithms.front()) / (halvings.back() - halvings.front());
   }
 
   Reference finished(const Path& path) {
