@@ -51,7 +51,7 @@ Ratio ratio_of_times(const std::vector<double>& a, const std::vector<double>& b,
 
 struct Slope {
   double value = std::numeric_limits<double>::quiet_NaN();
-  // Of the 95 % confidence interval (Student's t); infinite for two points.
+  // Half the 95 % confidence interval (Student's t); infinite for two points.
   double half_width = std::numeric_limits<double>::infinity();
   int points = 0;
 

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <map>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 
 #include "harness/base/small_runs.h"
@@ -95,7 +95,7 @@ class LastScene {
     scene_.reset();
     try {
       scene_ = find_scene(spec.scene)->build(spec.scene_parameters);
-    } catch (const std::invalid_argument&) {
+    } catch (const std::exception&) {  // a file that is gone, or too little memory, too
       return nullptr;
     }
     name_ = spec.scene;

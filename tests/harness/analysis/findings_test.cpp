@@ -61,7 +61,7 @@ json resolution_run(const std::string& solver, int n, double seconds_a_step) {
   return p;
 }
 
-// Of two methods at three sizes and of a third one, whose steps all take the same, at two of them.
+// Two methods have runs at three sizes; a third one, whose steps all take the same, at two of them.
 Growth growth_of(double strips, double scatter) {
   std::vector<json> points;
   for (const int n : {1001, 101, 317}) {
