@@ -1,5 +1,5 @@
 // Friction of every kind of method against what statics and dynamics say of it: a rope on a slope,
-// a turntable, and a rope round a post.
+// a vertex on a ground that moves, and a rope round a post.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -83,27 +83,75 @@ TEST(FrictionInEveryStepper, StopsASlidingRopeWhereCoulombSays) {
   }
 }
 
-// A vertex is carried round where friction bears its centripetal acceleration, and flung off where
-// not.
-TEST(FrictionOnATurntable, HoldsWhatItCan) {
+// ---- One vertex on a ground through the origin that moves ----
+
+constexpr double tick = 1.0 / 128;  // s, so that times are exact
+
+struct OnGround {
+  OnGround(double friction, BodyMotion motion, const Vector3d& at) {
+    ProblemParts parts;
+    parts.mass = {0.3};
+    parts.collider = std::make_shared<const testing::Ground>(Vector3d(0, 1, 0), 0, friction);
+    parts.body_motion = std::move(motion);
+    state = {at, Positions::Zero(3, 1), 0};
+    stepper = make_stepper("fast_projection", std::make_shared<const Problem>(parts), {0.01, 1});
+  }
+
+  State state;
+  std::unique_ptr<Stepper> stepper;
+};
+
+BodyMotion straight(const Vector3d& velocity) {
+  return [=](double time) { return Pose{Eigen::Matrix3d::Identity(), time * velocity}; };
+}
+
+// Friction accelerates by mu g until the vertex goes with the belt.
+TEST(MovingGround, TakesALoadAlongAtTheRateOfFriction) {
+  const double mu = 0.25, speed = 0.8;
+  OnGround load(mu, straight({speed, 0, 0}), {0, 0, 0});
+  double v = 0, x = 0;
+  for (int step = 1; step <= 128; ++step) {
+    ASSERT_TRUE(load.stepper->advance(load.state, tick));
+    v = std::min(speed, v + mu * gravity * tick);
+    x += tick * v;
+    ASSERT_NEAR(load.state.v(0, 0), v, 1e-12) << "step " << step;
+    ASSERT_NEAR(load.state.x(0, 0), x, 1e-12) << "step " << step;
+    ASSERT_NEAR(load.state.x(1, 0), 0, 1e-8) << "step " << step;
+  }
+  EXPECT_EQ(v, speed);
+}
+
+// The vertex is carried round where friction bears its centripetal acceleration, and flung off
+// where not.
+TEST(MovingGround, HoldsOnATurntableWhatFrictionCanHold) {
   constexpr double rate = 4, radius = 0.5, needed = rate * rate * radius / gravity;
   const auto turn = [](double time) {
     return Eigen::AngleAxisd(rate * time, Vector3d::UnitY()).toRotationMatrix();
   };
   const auto after = [&](double friction) {
-    ProblemParts parts;
-    parts.mass = {0.3};
-    parts.collider = std::make_shared<const testing::Ground>(Vector3d(0, 1, 0), 0, friction);
-    parts.body_motion = [=](double time) { return Pose{turn(time), Vector3d::Zero()}; };
-    State state{Vector3d(radius, 0, 0), Vector3d(0, 0, -rate * radius), 0};  // with the table
-    const auto stepper =
-        make_stepper("fast_projection", std::make_shared<const Problem>(parts), {0.01, 1});
-    while (state.time < 0.5) EXPECT_TRUE(stepper->advance(state, 1.0 / 128));
-    return state;
+    OnGround load(friction,
+                  [=](double time) {
+                    return Pose{turn(time), Vector3d::Zero()};
+                  },
+                  {radius, 0, 0});
+    load.state.v.col(0) = Vector3d(0, 0, -rate * radius);  // with the table
+    while (load.state.time < 0.5) EXPECT_TRUE(load.stepper->advance(load.state, tick));
+    return load.state;
   };
   const State held = after(1.1 * needed), flung = after(0.5 * needed);
   EXPECT_LT((held.x.col(0) - turn(held.time) * Vector3d(radius, 0, 0)).norm(), 1e-12);
   EXPECT_GT(flung.x.col(0).norm(), 1.1 * radius);
+}
+
+// A body that rises pushes, and a lift that falls faster than its load leaves it behind.
+TEST(MovingGround, CarriesItsLoadUpAndLosesItDownwards) {
+  OnGround up(0, straight({0, 0.5, 0}), {0, 0, 0}), down(0, straight({0, -20, 0}), {0, 0, 0});
+  for (int step = 0; step < 64; ++step) {
+    ASSERT_TRUE(up.stepper->advance(up.state, tick));
+    ASSERT_TRUE(down.stepper->advance(down.state, tick));
+  }
+  EXPECT_NEAR(up.state.x(1, 0), 0.5 * up.state.time, 1e-8);
+  EXPECT_NEAR(down.state.v(1, 0), -gravity * down.state.time, 1e-12);
 }
 
 // A post of `sides` facets each way round, along z, with the radius R to the middles of its facets.
