@@ -82,6 +82,13 @@ void repeat_finalists(std::vector<PointResult>& points, const Suite& suite, cons
   }
 }
 
+Kept kept(const FrameTime& frame, double budget) {
+  if (!(budget > 0) || frame.slow <= budget) return Kept::nearly_all;
+  return frame.median <= budget ? Kept::half : Kept::fewer;
+}
+
+}  // namespace
+
 std::vector<std::size_t> ladder_order(const std::vector<PointResult>& screened) {
   std::vector<std::size_t> order(screened.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -93,13 +100,6 @@ std::vector<std::size_t> ladder_order(const std::vector<PointResult>& screened) 
   });
   return order;
 }
-
-Kept kept(const FrameTime& frame, double budget) {
-  if (!(budget > 0) || frame.slow <= budget) return Kept::nearly_all;
-  return frame.median <= budget ? Kept::half : Kept::fewer;
-}
-
-}  // namespace
 
 Trials try_contestants(const Suite& suite, const std::vector<Search>& searches, const Wish& wish,
                        const ChooseLimits& limits, const SweepEvents& events,

@@ -25,6 +25,17 @@ class Files : public testing::Test {
   TemporaryFolder folder_{"files-test"};
 };
 
+TEST_F(Files, TheUsersOwnBesideTheOutputStay) {
+  const std::string names[] = {at("a.json.partial"), at("a.json.XXXXXX"), at("a.json.tmp")};
+  for (const std::string& name : names) std::ofstream(name) << "mine";
+  check_writable(at("a.json"));
+  for (const char* text : {"one", "two"}) {
+    write_atomically(at("a.json"), text);
+    EXPECT_EQ(content(at("a.json")), text);
+  }
+  for (const std::string& name : names) EXPECT_EQ(content(name), "mine") << name;
+}
+
 // Also to a file that is yet to be made; both names of one output are one lock.
 TEST_F(Files, ALinkStaysALink) {
   fs::create_directory(at("there"));

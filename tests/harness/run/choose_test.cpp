@@ -60,6 +60,19 @@ TEST(Choose, ABudgetIsKeptByTheFramesAndNotByTheMean) {
   EXPECT_FALSE(recommend(all, {.error = 0.001}).to_be_taken());
 }
 
+TEST(Choose, LaddersFollowWhatScreeningSaw) {
+  std::vector<PointResult> screened;
+  for (const auto& [status, seconds] : std::vector<std::pair<PointStatus, std::vector<double>>>{
+           {PointStatus::unsupported, {}},
+           {PointStatus::strain_missed, {0.1}},
+           {PointStatus::ok, {3}},
+           {PointStatus::not_converged, {0.01}},
+           {PointStatus::ok, {2}},
+           {PointStatus::timeout, {}}})
+    screened.emplace_back(PointSpec{}, status).samples = seconds;
+  EXPECT_EQ(ladder_order(screened), (std::vector<std::size_t>{4, 2, 1, 3, 0, 5}));
+}
+
 // Six contestants on a chain. A run takes the seconds of the table at 1/60 s, and twice as much at
 // half the step. The error is 1 % everywhere.
 class InventedMachine {
