@@ -88,6 +88,7 @@ struct Tune {
     std::vector<SweepSpec> chosen = tuning_scenes();
     if (!scene.empty()) {
       std::vector<std::string> names;
+      names.reserve(chosen.size());
       for (const SweepSpec& each : chosen) names.push_back(each.scene);
       check_known("scene to tune on", scene, names);
       std::erase_if(chosen, [this](const SweepSpec& s) { return s.scene != scene; });

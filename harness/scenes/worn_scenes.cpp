@@ -66,6 +66,7 @@ std::vector<Ring> capped(double radius, const Dome& lower, const std::vector<Rin
     return {dome.y + dome.height * std::cos(angle), radius * std::sin(angle)};
   };
   std::vector<Ring> rings;
+  rings.reserve(wall.size() + 2 * cap + 1);
   for (int k = 0; k < cap; ++k) rings.push_back(ring({lower.y, -lower.height}, k));
   rings.insert(rings.end(), wall.begin(), wall.end());
   for (int k = cap; k >= 0; --k) rings.push_back(ring(upper, k));
@@ -90,9 +91,9 @@ std::vector<Ring> column(const SceneParameters& p) {
   constexpr int rings = 16;
   constexpr double above = 0.02, below = 1.1, dome = 0.9;  // m; of the length; of the radius
   const double radius = p.at("body"), top = above, bottom = -below * p.at("length");
-  std::vector<Ring> wall;
+  std::vector<Ring> wall(rings);
   for (int k = 0; k < rings; ++k)
-    wall.push_back({bottom + (top - bottom) * static_cast<double>(k) / rings, radius});
+    wall[k] = {bottom + (top - bottom) * static_cast<double>(k) / rings, radius};
   return capped(radius, {bottom, dome * radius}, wall, {top, dome * radius});
 }
 

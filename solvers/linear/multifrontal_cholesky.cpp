@@ -191,7 +191,7 @@ using Four = typename VectorOf<Real, 4 * sizeof(Real)>::type;
 template <int K, class X, class Real>
 void substitute_forward(const Real* l, Distance ld, int n, Real* w) {
   constexpr bool single = std::is_same_v<X, Real>;
-  constexpr int width = sizeof(X) / sizeof(Real), step = single ? lanes<Real> : 1;
+  constexpr int width = single ? 1 : 4, step = single ? lanes<Real> : 1;
   X x[K];
 #pragma GCC unroll 8
   for (int c = 0; c < K; ++c) load(w + width * c, x[c]);

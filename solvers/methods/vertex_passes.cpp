@@ -254,25 +254,25 @@ double VertexPasses::visit(const Group& group, double stiffness_scale, double re
       b[1] = d1 * b[1] - l3 * b[2];
       b[0] = d0 * b[0] - l1 * b[1] - l2 * b[2];
     };
+    const auto gap = [&](const double(&p)[3]) {
+      return plane[0][i] * p[0] + plane[1][i] * p[1] + plane[2][i] * p[2] - plane[3][i];
+    };
     double at[3] = {f[0][i], f[1][i], f[2][i]};
     solve(at);
     for (int axis = 0; axis < 3; ++axis) at[axis] += x[axis][i];
     if constexpr (with_planes) {
       // Where that is behind the plane: the minimum on the plane.
-      const double gap =
-          plane[0][i] * at[0] + plane[1][i] * at[1] + plane[2][i] * at[2] - plane[3][i];
+      const double behind = std::min(gap(at), 0.0);
       double q[3] = {plane[0][i], plane[1][i], plane[2][i]};
       solve(q);
       const double give = q[0] * plane[0][i] + q[1] * plane[1][i] + q[2] * plane[2][i];
-      const double force = gap < 0 ? -gap / give : 0;
+      const double force = -behind / give;
       push[i] = force / inertia[i];
       for (int axis = 0; axis < 3; ++axis) at[axis] += force * q[axis];
     }
     for (int axis = 0; axis < 3; ++axis) at[axis] += (relaxation - 1) * (at[axis] - x[axis][i]);
     if constexpr (with_planes) {  // on the plane, where relaxation led through it
-      const double gap =
-          plane[0][i] * at[0] + plane[1][i] * at[1] + plane[2][i] * at[2] - plane[3][i];
-      const double through = relaxation > 1 && gap < 0 ? gap : 0;
+      const double through = relaxation > 1 ? std::min(gap(at), 0.0) : 0;
       for (int axis = 0; axis < 3; ++axis) at[axis] -= through * plane[axis][i];
     }
     moved[i] = 0;
