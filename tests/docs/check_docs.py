@@ -13,7 +13,7 @@ and that line of that file must then contain the text. Generated blocks end with
     <!-- references -->                         the committed references
     <!-- bench list NAME -->                    what `bench list NAME` prints
     <!-- folders of solvers -->                 which folders each folder of solvers/CMakeLists.txt uses
-    <!-- gaps SCENE TIME ... -->                what the gaps of a scene's committed references are made of, at these times
+    <!-- gaps PATTERN TIME ... -->              the parts of the gaps of the committed references that match, at these times
     <!-- steps RESULT.json LIMIT STEP ... -->    time and largest error of every contestant at these steps
     <!-- orders ANSWERS.json NAME ... -->        the orders of convergence of these known answers
     <!-- methods HEADLINE, RESULT.json LIMIT, ... -->   each method's time as published and in its best stepper, within that error
@@ -26,6 +26,7 @@ code. Pictures of results and docs/results.md must be of the commits that the re
 """
 
 import functools
+import itertools
 import json
 import math
 import os
@@ -94,13 +95,19 @@ def markdown(head: list[str], rows: list[list[str]]) -> str:
 
 def references(_: str) -> str:
     """Until when each committed reference can be trusted at some levels of error."""
-    levels, rows = (0.02, 0.01, 0.005), []
-    for path in sorted((ROOT / "results/references").glob("*.json"),  # by scene, then by size
-                       key=lambda path: (path.name.split("-n")[0], int(re.findall(r"-n(\d+)", path.name)[0]), path.name)):
+    levels = (0.02, 0.01, 0.005)
+
+    def trusted(path: Path) -> tuple[str, list[str]]:
         file = json_of(path)
         known = list(zip(file["times"], file["gap"]))[:len(file["positions"])]
-        until = [max((t for t, gap in known if SURE * gap <= level), default=0) for level in levels]
-        rows.append([f"`{path.stem}`", *(f"{t:g}" for t in until)])
+        return path.stem.split("-n")[0], [f"{max((t for t, gap in known if SURE * gap <= level), default=0):g}" for level in levels]
+
+    paths = sorted((ROOT / "results/references").glob("*.json"),
+                   key=lambda path: (path.name.split("-n")[0], int(re.findall(r"-n(\d+)", path.name)[0]), path.name))
+    rows = []
+    for (_, until), alike in itertools.groupby(paths, trusted):
+        alike = [f"`{path.stem}`" for path in alike]
+        rows.append([" to ".join(sorted({alike[0], alike[-1]}, key=alike.index)), *until])
     return markdown(["reference", *(f"{100 * level:g} %" for level in levels)], rows)
 
 
@@ -110,9 +117,9 @@ PARTS = {"routes": "first and second route", "third_route": "third route", "half
 
 def gaps_of(words: str) -> str:
     """In percent of the scene's size, at the sample time nearest to each."""
-    scene, *times = words.split()
+    pattern, *times = words.split()
     rows = []
-    for path in sorted((ROOT / "results/references").glob(f"{scene}-n*.json"), key=lambda path: int(path.stem.split("-n")[1])):
+    for path in sorted((ROOT / "results/references").glob(f"{pattern}.json")):
         file = json_of(path)
         places = [min(range(len(file["times"])), key=lambda i: abs(file["times"][i] - float(time))) for time in times]
         rows += [[f"`{path.stem}`", PARTS[part], *(f"{100 * gaps[i]:.2g}" for i in places)] for part, gaps in file["gap_parts"].items()]
