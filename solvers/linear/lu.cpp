@@ -1,5 +1,3 @@
-#include "solvers/linear/lu.h"
-
 #include <umfpack.h>
 
 #include <Eigen/Core>
@@ -7,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <new>
+
+#include "solvers/linear/spd_solver.h"
 
 extern "C" {  // LAPACK
 void dgttrf_(const int* n, double* dl, double* d, double* du, double* du2, int* ipiv, int* info);
@@ -20,10 +20,10 @@ namespace {
 
 constexpr double singular_rcond = 1e-15;
 
-class UmfpackSolver final : public UnsymmetricSolver {
+class UmfpackSolver final : public DirectSolver {
  public:
   explicit UmfpackSolver(SymmetricPattern pattern)
-      : UnsymmetricSolver(pattern.entries()),
+      : DirectSolver(pattern.entries()),
         pattern_(std::move(pattern)),
         solution_(pattern_.n),
         int_work_(pattern_.n),
@@ -78,16 +78,10 @@ class UmfpackSolver final : public UnsymmetricSolver {
   void* numeric_ = nullptr;
 };
 
-class TridiagonalLuSolver final : public UnsymmetricSolver {
+class TridiagonalLuSolver final : public DirectSolver {
  public:
   explicit TridiagonalLuSolver(int n)
-      : UnsymmetricSolver(3 * n - 2),
-        n_(n),
-        lower_(n),
-        diagonal_(n),
-        upper_(n),
-        upper2_(n),
-        pivot_(n) {}
+      : DirectSolver(3 * n - 2), n_(n), lower_(n), diagonal_(n), upper_(n), upper2_(n), pivot_(n) {}
 
   bool factor() override {
     double largest = 0;
@@ -128,7 +122,7 @@ class TridiagonalLuSolver final : public UnsymmetricSolver {
 
 }  // namespace
 
-std::unique_ptr<UnsymmetricSolver> make_unsymmetric_solver(SymmetricPattern pattern) {
+std::unique_ptr<DirectSolver> make_lu_solver(SymmetricPattern pattern) {
   if (pattern.chain(1)) return std::make_unique<TridiagonalLuSolver>(pattern.n);
   return std::make_unique<UmfpackSolver>(std::move(pattern));
 }
