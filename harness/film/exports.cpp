@@ -51,37 +51,31 @@ std::string vtp_text(const Part& part, const inextensible::Positions& x) {
   strains.resize(strains.size() + part.triangles.size());
   std::ostringstream out;
   out.precision(9);
-  const auto array = [&out](const char* type, const char* name, int components, auto&& values) {
+  const auto array = [&out](const char* type, const char* name, int components,
+                            const auto& values) {
     out << "<DataArray type=\"" << type << "\" Name=\"" << name << "\" NumberOfComponents=\""
         << components << "\" format=\"ascii\">";
-    values();
+    for (const auto value : values) out << value << ' ';
     out << "</DataArray>\n";
   };
   const auto cells = [&](const char* kind, const auto& all) {
+    std::vector<int> vertices, ends;
+    for (const auto& cell : all) {
+      vertices.insert(vertices.end(), cell.begin(), cell.end());
+      ends.push_back(static_cast<int>(vertices.size()));
+    }
     out << '<' << kind << ">\n";
-    array("Int32", "connectivity", 1, [&] {
-      for (const auto& cell : all) {
-        for (const int v : cell) out << v << ' ';
-      }
-    });
-    array("Int32", "offsets", 1, [&] {
-      std::size_t end = 0;
-      for (const auto& cell : all) out << (end += cell.size()) << ' ';
-    });
+    array("Int32", "connectivity", 1, vertices);
+    array("Int32", "offsets", 1, ends);
     out << "</" << kind << ">\n";
   };
   out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" "
          "byte_order=\"LittleEndian\">\n<PolyData>\n<Piece NumberOfPoints=\""
       << x.cols() << "\" NumberOfVerts=\"0\" NumberOfLines=\"" << part.edges.size()
       << "\" NumberOfStrips=\"0\" NumberOfPolys=\"" << part.triangles.size() << "\">\n<CellData>\n";
-  array("Float64", "strain", 1, [&] {
-    for (const double strain : strains) out << strain << ' ';
-  });
+  array("Float64", "strain", 1, strains);
   out << "</CellData>\n<Points>\n";
-  array("Float64", "positions", 3, [&] {
-    for (Eigen::Index i = 0; i < x.cols(); ++i)
-      out << x(0, i) << ' ' << x(1, i) << ' ' << x(2, i) << ' ';
-  });
+  array("Float64", "positions", 3, x.reshaped());
   out << "</Points>\n";
   cells("Lines", part.edges);
   cells("Polys", part.triangles);
