@@ -9,7 +9,7 @@
 #include "solvers/linear/multifrontal_cholesky.h"
 #include "solvers/linear/spd_solver.h"
 #include "solvers/problem/edge_constraints.h"
-#include "support/random_graph.h"
+#include "support/random_mesh.h"
 
 namespace inextensible {
 namespace {

@@ -10,7 +10,7 @@
 #include "solvers/linear/spd_solver.h"
 #include "solvers/systems/schur_complement.h"
 #include "support/contact.h"
-#include "support/random_graph.h"
+#include "support/random_mesh.h"
 
 namespace inextensible {
 namespace {
