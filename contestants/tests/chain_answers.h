@@ -39,8 +39,8 @@ inline void expect_copies(const std::string& solver) {
   }
 }
 
-// Vertices may be numbered in any order, masses and lengths may differ: two unlike links, released
-// level, whose first accelerations are known: tan of none, so both fall as free bodies would turn.
+// Vertices may be numbered in any order, masses and lengths may differ. Level links carry no load
+// across them: every vertex falls freely at first.
 inline void expect_unlike_links(const std::string& solver) {
   ProblemParts parts;
   parts.mass = {0.3, 1, 2};  // vertex 1 is the pin, then 2, then 0
@@ -50,7 +50,6 @@ inline void expect_unlike_links(const std::string& solver) {
   Positions x = Positions::Zero(3, 3);
   x.row(0) << 1.75, 1, 1.25;
   const Scene scene = finished(parts, x, Positions::Zero(3, 3));
-  // Level links carry no load across them: every vertex falls freely at first.
   const double h = 1e-5;
   const auto after = run(solver, scene, h, 1);
   EXPECT_NEAR(after.v(1, 0), -9.81 * h, 1e-9);

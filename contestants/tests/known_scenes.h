@@ -8,7 +8,6 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
-#include <set>
 #include <string>
 
 #include "solvers/plugin.h"
@@ -31,8 +30,7 @@ struct Scene {
 
 // A plug-in's rows, in the registry; once.
 inline void load(const std::string& plugin) {
-  static std::set<std::string> loaded;
-  if (!loaded.insert(plugin).second) return;
+  if (inextensible::find_backend(plugin)) return;
   void* library = dlopen((PLUGIN_FOLDER "/" + plugin + ".so").c_str(), RTLD_NOW | RTLD_LOCAL);
   ASSERT_TRUE(library) << dlerror();
   const auto entry =
@@ -66,10 +64,8 @@ inline Scene chain(int links, double turn = 0) {
 
 // The same, straight down.
 inline Scene hanging_chain(int links) {
-  Scene scene = chain(links);
-  scene.start.x.row(1) = -scene.start.x.row(0);
-  scene.start.x.row(0).setZero();
-  return scene;
+  const inextensible::testing::HangingRope rope(links, 1.0 / links, 1.0 / links);
+  return {rope.problem, rope.start};
 }
 
 // The same, bent and moving in all directions, every link at its length.
@@ -105,13 +101,11 @@ inline Scene spinning_net(int n, double omega) {
   return finished(parts, x, v);
 }
 
-// Makes a stepper of the plug-in with this name, and loads the plug-in first.
+// A stepper of the plug-in with this name.
 inline std::unique_ptr<inextensible::Stepper> make(const std::string& solver, const Scene& scene,
                                                    const Settings& settings = {}) {
   load(solver);
-  inextensible::BackendOptions options{0.01, 1, settings};
-  options.start = &scene.start;
-  return inextensible::make_stepper(solver, scene.problem, options);
+  return inextensible::make_stepper(solver, scene.problem, {0.01, 1, settings, &scene.start});
 }
 
 // The state after that many steps, all of which must be taken.
@@ -127,8 +121,12 @@ inline State run(const std::string& solver, const Scene& scene, double h, int st
   return state;
 }
 
+// About the origin.
 inline Eigen::Vector3d angular_momentum(const Scene& scene, const State& state) {
-  return inextensible::testing::angular_momentum(*scene.problem, state.x, state.v);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int i = 0; i < scene.problem->vertices(); ++i)
+    sum += scene.problem->mass()[i] * state.x.col(i).head<3>().cross(state.v.col(i).head<3>());
+  return sum;
 }
 
 inline double largest_strain(const Scene& scene, const State& state) {
