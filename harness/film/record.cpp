@@ -37,13 +37,13 @@ inextensible::Settings calibrated(const FilmSpec& spec, const Contestant& contes
   return settings;
 }
 
-// A step that cannot be solved may cost a hundred thousand passes, and as many again at each of its
-// halves. A run gives up where all its steps together, refused ones too, need more than this.
+// A step that cannot be solved may cost 100,000 passes, and as many again at each of its halves. A
+// run gives up once all its steps, including refused ones, have needed more than this.
 constexpr int most_halvings = 8;
 constexpr std::int64_t spare_tries = 1000, tries_per_step = 100;
 constexpr std::int64_t spare_iterations = 500'000, iterations_per_step = 10'000;
 
-// Why a run is to give up after so many of its steps; "": it is not.
+// Why a run must give up after this many steps; "": it need not.
 std::string too_much_work(const inextensible::WorkCounters& work, long steps) {
   const std::int64_t tries = work.steps + work.rejected_steps;
   if (tries > spare_tries + tries_per_step * steps)
@@ -111,14 +111,14 @@ FilmRun take_of(const FilmSpec& spec, const Scene& scene, double energy_bound,
   return take;
 }
 
-// A body that moves does work: it can throw cloth at twice its own speed at most, as an elastic
+// A moving body does work: it can throw cloth at no more than twice its own speed, as an elastic
 // impact does, and lift it as far as it rises itself.
 double energy_bound_of(const FilmScene& stage, double frames_per_second) {
   const Scene& scene = stage.scene;
   if (std::isfinite(scene.energy_bound)) return scene.energy_bound;
   const inextensible::Positions start = body_at(stage, 0);
   inextensible::Positions before = start;
-  double longest_way = 0, rise = 0;  // m, of a corner, from frame to frame and in all
+  double longest_way = 0, rise = 0;  // m, of any vertex, between two frames and in all
   for (std::size_t frame = 1; frame < stage.body_poses.size(); ++frame) {
     const inextensible::Positions now = body_at(stage, frame);
     longest_way = std::max(longest_way, (now - before).colwise().norm().maxCoeff());
@@ -137,10 +137,9 @@ double energy_bound_of(const FilmScene& stage, double frames_per_second) {
 inextensible::Positions body_at(const FilmScene& stage, std::size_t frame) {
   const inextensible::Pose pose =
       stage.body_poses.empty() ? inextensible::Pose{} : stage.body_poses.at(frame);
-  const std::vector<Eigen::Vector3d>& corners = stage.body.vertices;
-  inextensible::Positions x(3, corners.size());
-  for (std::size_t i = 0; i < corners.size(); ++i)
-    x.col(static_cast<Eigen::Index>(i)) = pose(corners[i]);
+  const auto& vertices = stage.body.vertices;
+  inextensible::Positions x(3, vertices.size());
+  std::transform(vertices.begin(), vertices.end(), x.colwise().begin(), pose);
   return x;
 }
 
