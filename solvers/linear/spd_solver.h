@@ -72,10 +72,9 @@ struct SpdSolverRow {
   const char* name;
   const char* summary;
   SymmetricPattern::Triangle triangle;  // that it reads
-  Takes takes;
-  bool fills;  // wants rows in an order of little fill; others do without or find their own
-  Precision precision;
+  Takes takes;                          // those of any pattern want rows in an order of little fill
   std::unique_ptr<SpdSolver> (*make)(SymmetricPattern);
+  Precision precision = Precision::full;
 };
 
 std::span<const SpdSolverRow> spd_solvers();

@@ -22,7 +22,6 @@ std::unique_ptr<SpdSolver> make(SymmetricPattern pattern) {
 
 constexpr auto lower = SymmetricPattern::Triangle::lower;
 constexpr auto upper = SymmetricPattern::Triangle::upper;
-constexpr bool fills = true, as_is = false;
 
 // For a problem without constraints or free vertices: not all libraries accept empty matrices.
 class NoEquations : public SpdSolver {
@@ -37,18 +36,17 @@ class NoEquations : public SpdSolver {
 // CHOLMOD's supernodal code transposes an upper triangle at every factorization; the up-looking
 // codes a lower one.
 constexpr SpdSolverRow table[] = {
-    {"tridiagonal", "L D L^T from both ends", upper, Takes::tridiagonal, as_is, Precision::full,
-     make_tridiagonal},
-    {"block_tridiagonal", "the same of 3 x 3 blocks", upper, Takes::block_tridiagonal, as_is,
-     Precision::full, make_block_tridiagonal},
-    {"multifrontal", "multifrontal Cholesky, laid out once", lower, Takes::any, fills,
-     Precision::full, make<MultifrontalCholesky<double>>},
+    {"tridiagonal", "L D L^T from both ends", upper, Takes::tridiagonal, make_tridiagonal},
+    {"block_tridiagonal", "the same of 3 x 3 blocks", upper, Takes::block_tridiagonal,
+     make_block_tridiagonal},
+    {"multifrontal", "multifrontal Cholesky, laid out once", lower, Takes::any,
+     make<MultifrontalCholesky<double>>},
     {"multifrontal_mixed", "the same in single precision where that is enough", lower, Takes::any,
-     fills, Precision::mixed, make<MixedCholesky>},
-    {"cholmod_simplicial", "CHOLMOD's simplicial Cholesky", upper, Takes::any, fills,
-     Precision::full, make_cholmod_simplicial},
-    {"cholmod_supernodal", "CHOLMOD's supernodal Cholesky", lower, Takes::any, fills,
-     Precision::full, make_cholmod_supernodal},
+     make<MixedCholesky>, Precision::mixed},
+    {"cholmod_simplicial", "CHOLMOD's simplicial Cholesky", upper, Takes::any,
+     make_cholmod_simplicial},
+    {"cholmod_supernodal", "CHOLMOD's supernodal Cholesky", lower, Takes::any,
+     make_cholmod_supernodal},
 };
 
 }  // namespace
