@@ -35,8 +35,8 @@ struct Free {
 // MuJoCo's own ends the program, once the user has pressed Enter.
 [[noreturn]] void throw_error(const char* message) { throw std::runtime_error(message); }
 
-// Numbers that a step may need at a time, more than MuJoCo guesses: for the derivatives of the
-// implicit integrator four matrices of a body's six velocities by all joint velocities.
+// Numbers on the stack of a step, more than MuJoCo reserves: the derivatives of the implicit
+// integrator need four matrices of a body's six velocities by all joint velocities.
 std::size_t stack_size(std::size_t velocities, int integrator) {
   const std::size_t derivatives = integrator == mjINT_IMPLICIT ? 32 * velocities * velocities : 0;
   return 10'000 + 1000 * velocities + derivatives;
@@ -47,7 +47,7 @@ constexpr int bodies_a_file = 80;
 
 std::string file_name(int part) { return "links" + std::to_string(part) + ".xml"; }
 
-// Bodies from `first` on, each in the one before it, and the rest of the chain in the last.
+// Bodies from `first` on, each nested in the one before it; the last one includes the next file.
 std::string bodies_text(const Links& links, int hinges, int first) {
   std::ostringstream text;
   text.precision(std::numeric_limits<double>::max_digits10);
@@ -65,7 +65,7 @@ std::string bodies_text(const Links& links, int hinges, int first) {
   return text.str();
 }
 
-// The model's files, which include each other, the first one first.
+// The model's files; each includes the next one.
 std::vector<std::string> model_files(const Links& links, const Eigen::Vector3d& gravity, int hinges,
                                      int integrator) {
   std::ostringstream text;
@@ -173,7 +173,7 @@ class MujocoChain final : public engines::ChainStepper {
   StepResult step(double h) override {
     model_->opt.timestep = h;
     mj_step(model_.get(), data_.get());
-    // After one of these it has reset itself.
+    // After one of these warnings MuJoCo has reset itself.
     for (const int warning : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC}) {
       if (data_->warning[warning].number != 0)
         return {Status::not_finite, 0, -1, 0, "MuJoCo met a number above 1e10"};

@@ -39,7 +39,7 @@ struct MobilizerChain::Parts {
   SimTK::State start;
   std::unique_ptr<SimTK::Integrator> integrator;
 
-  // Line orientations want the link along z, pins turn about z.
+  // Line orientations need the link along z; pins turn about z.
   void add_link(double length, double mass) {
     const SimTK::Vec3 end = pins ? SimTK::Vec3(length, 0, 0) : SimTK::Vec3(0, 0, length);
     const SimTK::Body::Rigid body(SimTK::MassProperties(mass, end, SimTK::Inertia(end, mass)));
@@ -53,7 +53,7 @@ struct MobilizerChain::Parts {
     ends.push_back(end);
   }
 
-  // against: the axes, in those of the link before; own_rate: what it turns faster, in its own.
+  // against: the axes in those of the previous link; own_rate: relative to that link, in own axes.
   void set(std::size_t link, const Eigen::Matrix3d& against, const Eigen::Vector3d& own_rate) {
     SimTK::MobilizedBody& body = bodies[link];
     if (pins) {

@@ -1,11 +1,11 @@
-// What engines in joint coordinates must fulfil, each test once for an engine.
+// Tests that every engine in joint coordinates must pass.
 #pragma once
 
 #include "contestants/tests/known_scenes.h"
 
 namespace engines {
 
-// fine: settings whose error of a second is far below 1e-6 at steps of 1 ms.
+// fine: settings whose error after a second is far below 1e-6 at steps of 1 ms.
 inline void expect_a_chain(const std::string& solver, const Settings& fine) {
   EXPECT_LT(pendulum_error(solver, 1000, fine), 1e-8);
 
@@ -29,7 +29,7 @@ inline void expect_a_chain(const std::string& solver, const Settings& fine) {
   EXPECT_NEAR(angular_momentum(swirl, end).y(), angular_momentum(swirl, swirl.start).y(), 1e-7);
 }
 
-// What goes in comes out: in no time nothing changes.
+// A step of almost no time changes nothing.
 inline void expect_copies(const std::string& solver) {
   for (const Scene& scene : {chain(9), chain(9, 0.7), swirling_chain(9)}) {
     const auto after = run(solver, scene, 1e-12, 1);
@@ -57,8 +57,7 @@ inline void expect_unlike_links(const std::string& solver) {
   EXPECT_LT(largest_strain(scene, run(solver, scene, 1e-3, 100)), 1e-12);
 }
 
-// A stepper that was made in a plane, and leaves it, is as one that was made in space, settings and
-// all.
+// A stepper made in a plane that leaves it equals one made in space, including its settings.
 inline void expect_leaves_the_plane(const std::string& solver, const Settings& settings) {
   const Scene flat = chain(5), swirl = swirling_chain(5);
   const auto leaves = make(solver, flat, settings), stays = make(solver, swirl, settings);
@@ -81,7 +80,7 @@ inline void expect_collapse_refused(const std::string& solver) {
   expect_refusal_without_trace(solver, scene, collapsed, 1e-3);
 }
 
-// Others are refused, and why is said.
+// Other problems are refused with a reason.
 inline void expect_chains_only(const std::string& solver) {
   const auto expect_unsupported = [&solver](const Scene& scene, const std::string& why) {
     try {

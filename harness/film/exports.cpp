@@ -15,13 +15,13 @@ std::string written(const std::string& path, const std::string& text) {
   return path;
 }
 
-// A mesh of a film: the cloth of a take, or the body beside it.
+// A mesh of a film: the cloth of a run, or the body.
 struct Part {
   std::string name;  // of its files
   std::vector<std::array<int, 3>> triangles;
   std::vector<std::array<int, 2>> edges;
-  const inextensible::Problem* problem;  // whose edges they are; null: there are none
-  bool stays;                            // one frame is all
+  const inextensible::Problem* problem;  // that owns the edges; null: no edges
+  bool stays;                            // does not move: one frame is enough
   std::function<inextensible::Positions(std::size_t frame)> at;
 
   std::string file(std::size_t frame, const char* extension) const {
@@ -88,7 +88,7 @@ void append(std::string& bytes, Number number) {
   bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
 }
 
-// The take must outlive them.
+// The run must outlive the parts.
 std::vector<Part> parts_of(const Recording& recording, const FilmRun& take,
                            const std::string& name) {
   const FilmScene& stage = recording.stage;
@@ -123,7 +123,7 @@ std::string pc2_bytes(const Part& part, std::size_t frames) {
   return bytes;
 }
 
-// One file a frame, or one of a body that stays; their paths.
+// Writes one file a frame, or one for a body that does not move; returns their paths.
 std::vector<std::string> write_frames(const std::vector<Part>& parts, const FilmRun& take,
                                       const std::string& folder, const char* extension,
                                       std::string (*text)(const Part&,

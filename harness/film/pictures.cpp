@@ -171,7 +171,7 @@ using inextensible::Positions;
 
 constexpr double half_angle = 12 * std::numbers::pi / 180;
 constexpr double margin = 1.06;
-// How far cloth is followed, over the radius of all at the start: about a body, and without one.
+// Distance up to which cloth stays in view, over the radius of the start: with a body, and without.
 constexpr double near_body = 1.1, near_start = 3;
 
 using Box = Eigen::AlignedBox3d;

@@ -27,7 +27,7 @@ constexpr float far_away = std::numeric_limits<float>::infinity();
 const Vector3d background = linear(Vector3d(0.97, 0.97, 0.98));
 const Vector3d body_colour = linear(Vector3d(0.78, 0.74, 0.72));
 
-// Weighted by the areas of the triangles about each vertex.
+// Vertex normals, weighted by the areas of the adjacent triangles.
 Matrix3Xd normals_of(const Positions& x, const Triangles& triangles) {
   Matrix3Xd sums = Matrix3Xd::Zero(3, x.cols());
   for (const auto& t : triangles) {
@@ -73,7 +73,7 @@ Owned<RTCGeometry> triangle_geometry(RTCDevice device, const Positions& x,
   return made;
 }
 
-// Balls about vertices, or the cylinders with round ends that start at each second one of them.
+// Spheres about vertices, or round-ended cylinders between consecutive pairs of them.
 Owned<RTCGeometry> round_geometry(RTCDevice device, const Shot& shot, RTCGeometryType type,
                                   const std::vector<int>& vertices, double radius) {
   Owned<RTCGeometry> made(rtcNewGeometry(device, type));
@@ -116,7 +116,7 @@ double open(RTCScene scene, const Vector3d& from, const Vector3d& to, double beg
 
 // ---- Light ----
 
-// The nearest point that a ray meets.
+// The nearest intersection of a ray.
 struct Hit {
   double distance = std::numeric_limits<double>::infinity();
   unsigned geometry = 0, primitive = 0;
@@ -124,7 +124,7 @@ struct Hit {
   Vector3d face = Vector3d::UnitY();  // normal of what was hit, not of length 1
 };
 
-// What is seen where a ray meets cloth or body.
+// What a ray sees of cloth or body.
 struct Surface {
   Vector3d point, normal, colour;
   double shine = 0;
@@ -202,8 +202,8 @@ class Tracer {
   }
 
   // The shading normal, towards the viewer, and a point on the smooth surface that the corners'
-  // normals describe (Hanika, Hacking the shadow terminator, 2021): shadows of a coarse mesh's flat
-  // triangles on each other would show them.
+  // normals describe (Hanika, Hacking the shadow terminator, 2021), so that the flat triangles of a
+  // coarse mesh cast no visible shadows on each other.
   Surface on_triangle(const Hit& hit, const Vector3d& direction, const Positions& x,
                       const std::array<int, 3>& corners, const Matrix3Xd& normals) const {
     const double facing = hit.face.dot(direction) > 0 ? -1 : 1;
@@ -224,7 +224,7 @@ class Tracer {
     return surface;
   }
 
-  // How much of a yarn's line is at a point: 0 to 1.
+  // Coverage of a point by a yarn's line, 0 to 1.
   double line(const Hit& hit) const {
     const auto& t = shot_.stage.scene.triangles[hit.primitive];
     const unsigned drawn = shot_.yarns[hit.primitive];
@@ -323,8 +323,8 @@ Pixels trace(const Shot& shot, const View& view, int width, int samples) {
     for (int column = 0; column < pixels.width; ++column) {
       Vector3d sum = Vector3d::Zero();
       for (int sample = 0; sample < samples * samples; ++sample) {
-        const int row_inside = sample / samples, column_inside = sample % samples;
-        const double right = (column_inside + 0.5) / samples, down = (row_inside + 0.5) / samples;
+        const double right = (sample % samples + 0.5) / samples;
+        const double down = (sample / samples + 0.5) / samples;
         const Vector3d direction =
             view.ray(2 * (column + right) / pixels.width - 1, 1 - 2 * (row + down) / pixels.height);
         sum += tracer.colour(direction, sample);

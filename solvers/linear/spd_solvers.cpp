@@ -7,7 +7,7 @@
 
 namespace inextensible {
 
-// Those that are known by their name alone.
+// Solvers whose classes are private to their files.
 std::unique_ptr<SpdSolver> make_tridiagonal(SymmetricPattern pattern);
 std::unique_ptr<SpdSolver> make_block_tridiagonal(SymmetricPattern pattern);
 std::unique_ptr<SpdSolver> make_cholmod_simplicial(SymmetricPattern pattern);
