@@ -84,20 +84,18 @@ class TridiagonalLuSolver final : public DirectSolver {
       : DirectSolver(3 * n - 2), n_(n), lower_(n), diagonal_(n), upper_(n), upper2_(n), pivot_(n) {}
 
   bool factor() override {
-    double largest = 0;
     const double* value = values_.data();  // column j: (j-1, j), (j, j), (j+1, j)
-    for (std::size_t j = 0; j < diagonal_.size(); ++j) {
+    for (int j = 0; j < n_; ++j) {
       if (j > 0) upper_[j - 1] = *value++;
       diagonal_[j] = *value++;
-      if (j + 1 < diagonal_.size()) lower_[j] = *value++;
-      largest = std::max(largest, std::abs(diagonal_[j]));
+      if (j + 1 < n_) lower_[j] = *value++;
     }
+    const double largest = diagonal_.cwiseAbs().maxCoeff();
     int info = 0;
     dgttrf_(&n_, lower_.data(), diagonal_.data(), upper_.data(), upper2_.data(), pivot_.data(),
             &info);
-    return info == 0 && std::all_of(diagonal_.begin(), diagonal_.end(), [largest](double d) {
-             return std::abs(d) > singular_rcond * largest && std::isfinite(d);
-           });
+    return info == 0 && diagonal_.allFinite() &&
+           diagonal_.cwiseAbs().minCoeff() > singular_rcond * largest;
   }
 
   void solve(double* rhs) override {
@@ -108,15 +106,14 @@ class TridiagonalLuSolver final : public DirectSolver {
   }
 
   double reciprocal_condition() const override {
-    const auto pivots = Eigen::Map<const Eigen::ArrayXd>(diagonal_.data(), n_).abs();
-    return pivots.minCoeff() / pivots.maxCoeff();
+    return diagonal_.cwiseAbs().minCoeff() / diagonal_.cwiseAbs().maxCoeff();
   }
   double factor_nonzeros() const override { return 5.0 * n_; }
   double factor_flops() const override { return 8.0 * n_; }
 
  private:
   int n_;
-  std::vector<double> lower_, diagonal_, upper_, upper2_;
+  Eigen::VectorXd lower_, diagonal_, upper_, upper2_;
   std::vector<int> pivot_;
 };
 
