@@ -28,7 +28,7 @@ struct Links {
 // Orientation and rotation of a link.
 struct LinkPose {
   Eigen::Matrix3d axes;  // the link's own, as columns: the first along it, the third z in a plane
-  Eigen::Vector3d rate;  // rad/s; no link spins about itself against the one before it
+  Eigen::Vector3d rate;  // rad/s, against the link before it, without spin about itself
 };
 
 using LinkPoses = std::vector<LinkPose>;

@@ -150,7 +150,6 @@ class MujocoChain final : public engines::ChainStepper {
     const StepResult found = find(state);
     if (!found) return found;
     Eigen::Quaterniond before = Eigen::Quaterniond::Identity();
-    Eigen::Vector3d rate_before = Eigen::Vector3d::Zero();
     for (int i = 0; i < links_.count(); ++i) {
       const Eigen::Matrix3d& axes = poses_[i].axes;
       const Eigen::Quaterniond turned(axes);
@@ -158,12 +157,10 @@ class MujocoChain final : public engines::ChainStepper {
       mjtNum* quaternion = model_->body_quat + 4 * (i + 1);
       quaternion[0] = against.w();
       for (int c = 0; c < 3; ++c) quaternion[1 + c] = against.vec()[c];
-      const Eigen::Vector3d rate = poses_[i].rate - rate_before;
       mjtNum* qvel = data_->qvel + hinges() * i;
-      qvel[0] = rate.dot(axes.col(2));
-      if (hinges() == 2) qvel[1] = rate.dot(axes.col(1));
+      qvel[0] = poses_[i].rate.dot(axes.col(2));
+      if (hinges() == 2) qvel[1] = poses_[i].rate.dot(axes.col(1));
       before = turned;
-      rate_before = poses_[i].rate;
     }
     mju_zero(data_->qpos, model_->nq);
     std::memset(data_->warning, 0, sizeof(data_->warning));

@@ -132,9 +132,8 @@ void write_pictures(const std::string& folder, const Recording& recording, const
 
 // ---- for other programs (exports.cpp) ----
 
-// Each function writes a run into a folder, which is created if it is missing, and returns the
-// paths to open. A body has files of its own, <name>-body...: one if it does not move, else as many
-// as the cloth.
+// Each function writes a run into an existing folder and returns the paths to open. A body has
+// files of its own, <name>-body...: one if it does not move, else as many as the cloth.
 
 // Wavefront OBJ, one file a frame (<name>-0001.obj ...), with faces for cloth and lines for chains.
 std::vector<std::string> write_obj(const Recording& recording, const FilmRun& take,

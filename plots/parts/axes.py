@@ -12,7 +12,7 @@ from parts.words import step_name
 COARSEST_STEP = 1 / 25  # the ladder of steps starts here (docs/measuring.md)
 
 
-def _ticks(axis: Axis, major: Locator, minor: Locator, text=lambda value: f"{value:g}") -> None:
+def set_ticks(axis: Axis, major: Locator, minor: Locator, text=lambda value: f"{value:g}") -> None:
     axis.set_major_locator(major)
     axis.set_minor_locator(minor)
     axis.set_major_formatter(FuncFormatter(lambda value, _: text(value)))
@@ -23,7 +23,7 @@ def _log(axis: Axis, values: list[float], room: float, *ticks) -> None:
     """A logarithmic axis that reaches beyond all values by a factor."""
     name = axis.axis_name
     axis.axes.set(**{f"{name}scale": "log", f"{name}lim": (min(values) / room, max(values) * room)})
-    _ticks(axis, *ticks)
+    set_ticks(axis, *ticks)
 
 
 def log_x(axes: Axes, ticks: list[float], inches: float) -> None:
@@ -56,7 +56,7 @@ def steps_on_x(axes: Axes, steps: list[float]) -> None:
     for step in sorted(set(steps), reverse=True):
         if not ladder or step < 0.95 * ladder[-1]:
             ladder.append(step)
-    _ticks(axes.xaxis, FixedLocator(ladder[::math.ceil(len(ladder) / 6)]), NullLocator(), step_name)
+    set_ticks(axes.xaxis, FixedLocator(ladder[::math.ceil(len(ladder) / 6)]), NullLocator(), step_name)
 
 
 def log_steps_on_y(axes: Axes, steps: list[float]) -> None:
