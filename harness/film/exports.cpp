@@ -91,20 +91,19 @@ void append(std::string& bytes, Number number) {
 // The run must outlive the parts.
 std::vector<Part> parts_of(const Recording& recording, const FilmRun& take,
                            const std::string& name) {
-  const FilmScene& stage = recording.stage;
-  const inextensible::Problem* problem = stage.scene.problem.get();
+  const inextensible::Problem* problem = recording.scene.problem.get();
   std::vector<Part> parts{
-      {name, stage.scene.triangles, {}, problem, false, [&take](std::size_t frame) {
+      {name, recording.scene.triangles, {}, problem, false, [&take](std::size_t frame) {
          return take.frames[frame];
        }}};
   for (const auto& [a, b] : problem->edges()) parts[0].edges.push_back({a, b});
-  if (!stage.body.vertices.empty())
+  if (!recording.body.vertices.empty())
     parts.push_back({name + "-body",
-                     stage.body.triangles,
+                     recording.body.triangles,
                      {},
                      nullptr,
-                     stage.body_poses.empty(),
-                     [&stage](std::size_t frame) { return body_at(stage, frame); }});
+                     recording.body_poses.empty(),
+                     [&recording](std::size_t frame) { return body_at(recording, frame); }});
   return parts;
 }
 

@@ -40,16 +40,11 @@ struct FilmRun {
   std::vector<double> seconds;                  // wall time of each frame but the first
 };
 
-// What all runs share.
-struct FilmScene {
+struct Recording {
+  FilmSpec spec;
   Scene scene;
   inextensible::TriangleMesh body;             // empty: no obstacle
   std::vector<inextensible::Pose> body_poses;  // at each frame; empty: it does not move
-};
-
-struct Recording {
-  FilmSpec spec;
-  FilmScene stage;
   std::vector<FilmRun> takes;
 };
 
@@ -62,7 +57,7 @@ Recording record(const FilmSpec& spec, const std::function<bool()>& interrupted,
                  const std::function<void(const FilmRun&)>& told);
 
 // The body's vertices at a frame.
-inextensible::Positions body_at(const FilmScene& stage, std::size_t frame);
+inextensible::Positions body_at(const Recording& recording, std::size_t frame);
 
 // ---- the camera ----
 
@@ -90,9 +85,9 @@ View view_of(const Recording& recording, const std::vector<std::size_t>& frames)
 Eigen::Vector3d linear(const Eigen::Vector3d& srgb);
 std::array<std::uint8_t, 3> shade(const Eigen::Vector3d& rgb);  // linear to sRGB
 
-// What a picture shows at one time; the stage must outlive it.
+// What a picture shows at one time; the recording must outlive it.
 struct Shot {
-  const FilmScene& stage;         // without triangles, edges are drawn as a rope
+  const Recording& recording;     // a scene without triangles is drawn as a rope
   inextensible::Positions cloth;  // m
   // Which sides of each triangle are yarns: 1 from corner 0 to 1, 2 from 1 to 2, 4 from 2 to 0.
   std::vector<std::uint8_t> yarns = {};

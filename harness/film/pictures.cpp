@@ -101,22 +101,21 @@ void on_all_cores(std::size_t count, const std::function<void(std::size_t)>& wor
 
 Shot shot_of(const Recording& recording, const View& view, std::size_t take, std::size_t frame,
              int width) {
-  const FilmScene& stage = recording.stage;
   const FilmRun& shown = recording.takes.at(take);
-  Shot shot{.stage = stage, .cloth = shown.frames.at(frame)};
-  shot.colours = colours_of(*stage.scene.problem, shot.cloth, shown.strain_limit);
-  if (!stage.body.vertices.empty()) shot.body = body_at(stage, frame);
-  const std::vector<double>& lengths = stage.scene.problem->rest_length();
+  Shot shot{.recording = recording, .cloth = shown.frames.at(frame)};
+  shot.colours = colours_of(*recording.scene.problem, shot.cloth, shown.strain_limit);
+  if (!recording.body.vertices.empty()) shot.body = body_at(recording, frame);
+  const std::vector<double>& lengths = recording.scene.problem->rest_length();
   const double edge = std::accumulate(lengths.begin(), lengths.end(), 0.0) /
                       std::max(1.0, static_cast<double>(lengths.size()));  // m, the mean
   const double distance = (view.eye - view.centre).norm();
   const double pixel = 2 * view.tangent * distance / width;  // m
   shot.thickness = std::clamp(0.25 * edge, 0.004 * view.size, 0.03 * view.size);
-  if (stage.scene.triangles.empty()) {
+  if (recording.scene.triangles.empty()) {
     shot.yarn = std::max(1.2 * pixel, std::min(0.009 * view.size, 0.25 * edge));
     return shot;
   }
-  shot.yarns = yarns_of(stage.scene);
+  shot.yarns = yarns_of(recording.scene);
   shot.yarn = std::clamp(0.05 * edge, 0.4 * pixel, 0.9 * pixel);
   shot.yarn_shade = 0.5 * std::min(1.0, edge / (line_spacing * pixel));
   return shot;
@@ -152,7 +151,7 @@ void write_pictures(const std::string& folder, const Recording& recording, const
                      {"energy_gained", take.energy_gained},
                      {"frames", take.frames.size()},
                      {"largest_strain", take.largest_strain},
-                     {"sag", sags(recording.stage.scene, take)},
+                     {"sag", sags(recording.scene, take)},
                      {"seconds", take.seconds}});
   const json header{
       {"width", spec.width},     {"height", view.height(spec.width)},
@@ -178,10 +177,9 @@ using Box = Eigen::AlignedBox3d;
 
 // All points that the camera must see.
 std::vector<Vector3d> in_sight(const Recording& recording, const std::vector<std::size_t>& frames) {
-  const FilmScene& stage = recording.stage;
   const Positions& start = recording.takes.at(0).frames.at(0);
-  const bool body = !stage.body.vertices.empty();
-  const Positions body_start = body ? body_at(stage, 0) : start;
+  const bool body = !recording.body.vertices.empty();
+  const Positions body_start = body ? body_at(recording, 0) : start;
   const Vector3d at_first =
       Box(body_start.rowwise().minCoeff(), body_start.rowwise().maxCoeff()).center();
   double reach = 0;
@@ -193,11 +191,11 @@ std::vector<Vector3d> in_sight(const Recording& recording, const std::vector<std
     for (const std::size_t shown : frames) {
       const std::size_t frame = std::min(shown, take.frames.size() - 1);
       Vector3d middle = at_first;
-      if (!stage.body_poses.empty())
-        middle = stage.body_poses.at(frame)(stage.body_poses[0].inverse()(middle));
+      if (!recording.body_poses.empty())
+        middle = recording.body_poses.at(frame)(recording.body_poses[0].inverse()(middle));
       for (const auto& point : take.frames[frame].colwise())
         if ((point - middle).norm() <= followed) all.emplace_back(point);
-      const Positions around = body_at(stage, frame);  // empty where there is no body
+      const Positions around = body_at(recording, frame);  // empty where there is no body
       for (const auto& corner : around.colwise()) all.emplace_back(corner);
     }
   }

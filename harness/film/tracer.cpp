@@ -135,13 +135,14 @@ class Tracer {
   Tracer(const Shot& shot, const View& view, int samples)
       : shot_(shot), view_(view), count_(samples * samples), device_(rtcNewDevice("threads=1")) {
     if (!device_) throw std::runtime_error("Embree cannot start");
-    normals_ = normals_of(shot.cloth, shot.stage.scene.triangles);
-    body_normals_ = normals_of(shot.body, shot.stage.body.triangles);
-    const auto body = triangle_geometry(device_.get(), shot.body, shot.stage.body.triangles);
+    normals_ = normals_of(shot.cloth, shot.recording.scene.triangles);
+    body_normals_ = normals_of(shot.body, shot.recording.body.triangles);
+    const auto body = triangle_geometry(device_.get(), shot.body, shot.recording.body.triangles);
     body_ = scene_of(device_.get(), {body.get()});
-    if (shot.stage.scene.triangles.empty()) {
+    if (shot.recording.scene.triangles.empty()) {
       std::vector<int> ends, vertices(static_cast<std::size_t>(shot.cloth.cols()));
-      for (const auto& [a, b] : shot.stage.scene.problem->edges()) ends.insert(ends.end(), {a, b});
+      for (const auto& [a, b] : shot.recording.scene.problem->edges())
+        ends.insert(ends.end(), {a, b});
       std::iota(vertices.begin(), vertices.end(), 0);
       const auto rope = round_geometry(device_.get(), shot, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE,
                                        ends, shot.yarn),
@@ -150,7 +151,8 @@ class Tracer {
       cloth_ = scene_of(device_.get(), {rope.get(), knots.get()});
       all_ = scene_of(device_.get(), {rope.get(), knots.get(), body.get()});
     } else {
-      const auto cloth = triangle_geometry(device_.get(), shot.cloth, shot.stage.scene.triangles);
+      const auto cloth =
+          triangle_geometry(device_.get(), shot.cloth, shot.recording.scene.triangles);
       cloth_ = scene_of(device_.get(), {cloth.get()});
       all_ = scene_of(device_.get(), {cloth.get(), body.get()});
     }
@@ -173,11 +175,11 @@ class Tracer {
     const double apart = std::max(1e-4 * view_.size, shot_.thickness);
     if (std::isinf(cloth.distance) && std::isinf(body.distance)) return background;
     if (cloth.distance < body.distance + shot_.thickness)
-      return lit(shot_.stage.scene.triangles.empty() ? on_rope(cloth, direction)
-                                                     : on_cloth(cloth, direction),
+      return lit(shot_.recording.scene.triangles.empty() ? on_rope(cloth, direction)
+                                                         : on_cloth(cloth, direction),
                  direction, sample, apart);
     Surface surface = on_triangle(body, direction, shot_.body,
-                                  shot_.stage.body.triangles[body.primitive], body_normals_);
+                                  shot_.recording.body.triangles[body.primitive], body_normals_);
     surface.colour = body_colour;
     surface.shine = 0.06;
     return lit(surface, direction, sample, apart);
@@ -226,7 +228,7 @@ class Tracer {
 
   // Coverage of a point by a yarn's line, 0 to 1.
   double line(const Hit& hit) const {
-    const auto& t = shot_.stage.scene.triangles[hit.primitive];
+    const auto& t = shot_.recording.scene.triangles[hit.primitive];
     const unsigned drawn = shot_.yarns[hit.primitive];
     if (drawn == 0) return 0;
     const double twice_area = hit.face.norm();
@@ -242,7 +244,7 @@ class Tracer {
   }
 
   Surface on_cloth(const Hit& hit, const Vector3d& direction) const {
-    const auto& corners = shot_.stage.scene.triangles[hit.primitive];
+    const auto& corners = shot_.recording.scene.triangles[hit.primitive];
     Surface surface = on_triangle(hit, direction, shot_.cloth, corners, normals_);
     for (std::size_t k = 0; k < 3; ++k)
       surface.colour += hit.weight[k] * shot_.colours.col(corners[k]);
@@ -256,7 +258,7 @@ class Tracer {
     surface.point = view_.eye + hit.distance * direction;
     surface.normal = hit.face.normalized();
     if (hit.geometry == 0) {
-      const auto [a, b] = shot_.stage.scene.problem->edges()[hit.primitive];
+      const auto [a, b] = shot_.recording.scene.problem->edges()[hit.primitive];
       surface.colour = hit.weight[0] * shot_.colours.col(a) + hit.weight[1] * shot_.colours.col(b);
     } else {
       surface.colour = shot_.colours.col(hit.primitive);
