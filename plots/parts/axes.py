@@ -80,12 +80,7 @@ def grid(axes: Axes) -> None:
 
 def draw_slopes(axes: Axes, from_right: bool = False) -> None:
     """Faint lines of slope 1 and 2 through the lower left corner, or through the upper right one, to read the curves' slopes against."""
-    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
-    for power in (1, 2):
-        if from_right:
-            end = max(left, right * (low / high) ** (1 / power))
-            line = [end, right], [high * (end / right) ** power, high]
-        else:
-            end = min(right, left * (high / low) ** (1 / power))
-            line = [left, end], [low, low * (end / left) ** power]
-        axes.plot(*line, color=GREY, linewidth=0.6, linestyle=(0, (1, 3)), zorder=1)
+    ends, corner = axes.get_xlim(), int(from_right)
+    for power in (1, 2):  # clipped at the axes
+        line = [axes.get_ylim()[corner] * (x / ends[corner]) ** power for x in ends]
+        axes.plot(ends, line, color=GREY, linewidth=0.6, linestyle=(0, (1, 3)), zorder=1)
