@@ -62,10 +62,9 @@ Value* buffer(const Owned<RTCGeometry>& geometry, RTCBufferType type, RTCFormat 
 Owned<RTCGeometry> triangle_geometry(RTCDevice device, const Positions& x,
                                      const Triangles& triangles) {
   Owned<RTCGeometry> made(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
-  auto* points = buffer<float[3]>(made, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3,
+  auto* points = buffer<Vector3f>(made, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3,
                                   static_cast<std::size_t>(x.cols()));
-  for (Eigen::Index i = 0; i < x.cols(); ++i)
-    for (Eigen::Index k = 0; k < 3; ++k) points[i][k] = static_cast<float>(x(k, i));
+  for (Eigen::Index i = 0; i < x.cols(); ++i) points[i] = x.col(i).cast<float>();
   auto* corners =
       buffer<std::array<int, 3>>(made, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles.size());
   std::copy(triangles.begin(), triangles.end(), corners);

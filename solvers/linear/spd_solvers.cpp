@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -62,11 +61,10 @@ void SpdSolver::solve_coordinates(Eigen::Matrix4Xd& rhs) {
 std::span<const SpdSolverRow> spd_solvers() { return table; }
 
 const SpdSolverRow& spd_solver(std::string_view name) {
-  const auto place = std::find_if(std::begin(table), std::end(table),
-                                  [name](const SpdSolverRow& row) { return row.name == name; });
-  if (place == std::end(table))
-    throw std::invalid_argument("no linear solver '" + std::string(name) + "'");
-  return *place;
+  for (const SpdSolverRow& row : table) {
+    if (row.name == name) return row;
+  }
+  throw std::invalid_argument("no linear solver '" + std::string(name) + "'");
 }
 
 std::unique_ptr<SpdSolver> make_spd_solver(std::string_view name, SymmetricPattern pattern) {
