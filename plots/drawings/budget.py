@@ -33,8 +33,7 @@ def draw(place: Json, result: Result) -> Figure:
     sheet = make_sheet(result, f"{subject(scene, vertices)}: which strain a frame's time buys", caption, NAMES + WIDTH + RIGHT, height + 0.25,
                        finding=" ".join(found[:1]))
     axes = sheet.axes(NAMES, sheet.bottom, WIDTH, height)
-    axes.set_xscale("log")
-    axes.set(ylim=(len(rows) - 0.4, -1), xlabel="ms a frame of 1/60 s, in 99 of 100 frames")
+    axes.set(xscale="log", ylim=(len(rows) - 0.4, -1), xlabel="ms a frame of 1/60 s, in 99 of 100 frames")
     for budget in BUDGETS:
         axes.axvline(budget, color=DARK_GREY, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1)
     shades = {limit: to_hex(colormaps["Blues"](0.25 + 0.75 * k / (len(limits) - 1))) for k, limit in enumerate(limits)}  # darker: less strain

@@ -54,8 +54,7 @@ def draw(plane: Json, result: Result) -> Figure:
                 text, right = f" {lead['value']:.2g}  {result.label(cell[name])}", max(high, 1)
             axes.text(right, y, text, va="center", fontsize=6.5)
     most = max(cell[ratio]["value"] for cell in cells for _, ratio, *_ in SHARES if cell[ratio])
-    axes.set_xscale("log")
-    axes.set(xlim=(1, 8 * most), ylim=(len(cells), 0), xlabel="times the leader's time")
+    axes.set(xscale="log", xlim=(1, 8 * most), ylim=(len(cells), 0), xlabel="times the leader's time")
     set_ticks(axes.xaxis, FixedLocator([tick for tick in TICKS if tick <= 4 * most]), NullLocator())
     axes.set_yticks([k + 0.5 for k in range(len(cells))],
                     [f"{percent(cell['strain_limit'])}: {result.label(cell['first'])}" for cell in cells])
