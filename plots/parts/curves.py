@@ -84,7 +84,7 @@ def draw_noise(axes: Axes, factor: float | None) -> None:
 # ---- the steps that the fastest runs took -----------------------------------------------------------------------------
 
 def draw_steps(axes: Axes, curves: Curves, styles: Styles) -> None:
-    """Solvers often share a step, so equal ones are fanned out sideways; an arrow where it is the coarsest or the finest of all."""
+    """Solvers often share a step, so equal ones are fanned out sideways; an arrow marks the coarsest or finest step tried."""
     shown = {solver: (style, curves[solver].best) for solver, style in styles.items() if style.prominent and not style.hollow}
     log_steps_on_y(axes, [b.step for _, best in shown.values() for b in best])
     taken: dict[tuple[float, int], list[str]] = {}
