@@ -36,8 +36,6 @@ class UmfpackSolver final : public DirectSolver {
     umfpack_di_free_numeric(&numeric_);
     umfpack_di_free_symbolic(&symbolic_);
   }
-  UmfpackSolver(const UmfpackSolver&) = delete;
-  UmfpackSolver& operator=(const UmfpackSolver&) = delete;
 
   bool factor() override {
     if (!std::all_of(values_.begin(), values_.end(), [](double v) { return std::isfinite(v); }))
