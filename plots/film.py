@@ -55,7 +55,7 @@ def caption(film: Film, take: int, frame: int) -> list[str]:
     of = film.takes[take]
     frame = min(frame, of["frames"] - 1)
     strained = max(of["largest_strain"]) > of["strain_limit"] * (1 + 1e-6)
-    status = "gains energy" if of["energy_gained"] else "gave up" if of["detail"] else "strained beyond the limit" if strained else "ok"
+    status = "gains energy" if of["energy_gained"] else "gave up" if of["detail"] else "strained more than permitted" if strained else "ok"
     lines = [of["label"], f"steps of 1/{1 / of['step']:.6g} s: {status}",
              f"strain limit {percent(of['strain_limit'])}, largest so far {percent(max(of['largest_strain'][:frame + 1]))}"]
     if of["seconds"]:
