@@ -62,8 +62,7 @@ class SpdSolver : public DirectSolver {
 // The pattern has both triangles.
 std::unique_ptr<DirectSolver> make_lu_solver(SymmetricPattern pattern);
 
-// ---- The list of those for positive definite matrices: a new one is its file and one row in
-// spd_solvers.cpp ----
+// ---- The list of SPD solvers: a new one is its file and one row in spd_solvers.cpp ----
 
 enum class Takes { any, tridiagonal, block_tridiagonal };  // patterns; blocks are 3 x 3
 enum class Precision { full, mixed };                      // of the factors
