@@ -8,7 +8,7 @@
 # LINKS    libraries, for this folder's sources alone
 # LIGHT    sources in which nothing is timed and nothing computes for long: compiled with less optimization, in two thirds of the time
 # `folder_common_headers` of the caller are parsed once for all folders.
-# Headers are included by their path from the top of the project: "solvers/linear/lu.h".
+# Headers are included by their path from the top of the project: "solvers/linear/spd_solver.h".
 function(add_folder folder)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;LIGHT;USES;LINKS")
   set(target ${folder_prefix}_${folder})

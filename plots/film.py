@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Puts the pictures of `bench film` together: stills on a sheet, or a film, solvers side by side in step.
+"""Puts the pictures of `bench film` together: stills on a sheet, or a film with solvers side by side.
 
     plots/film.py FOLDER OUT.webp|.mp4|.png
 
@@ -32,7 +32,7 @@ GREY = 0.4       # how far the picture of a run that gave up goes towards the ba
 
 
 class Film:
-    """What a folder holds, and the font that its pictures have room for."""
+    """The contents of a folder, and a font that suits the size of its pictures."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -51,7 +51,7 @@ def percent(strain: float) -> str:
 
 
 def caption(film: Film, take: int, frame: int) -> list[str]:
-    """What stands under a panel."""
+    """The lines under a panel."""
     of = film.takes[take]
     frame = min(frame, of["frames"] - 1)
     strained = max(of["largest_strain"]) > of["strain_limit"] * (1 + 1e-6)
@@ -68,14 +68,14 @@ def caption(film: Film, take: int, frame: int) -> list[str]:
 # ---- Sheets -----------------------------------------------------------------------------------------------------------
 
 def write(picture: Image.Image, film: Film, lines: list[str], top: float, left: float | None = MARGIN, fill: Any = INK) -> None:
-    """Line by line; left None: in the middle."""
+    """Line by line; left None: centred."""
     for number, line in enumerate(lines):
         start = (film.width - film.font.getlength(line)) / 2 if left is None else left
         ImageDraw.Draw(picture).text((start, top + number * film.line), line, fill=fill, font=film.font)
 
 
 def alarmed(picture: Image.Image, text: str, film: Film) -> Image.Image:
-    """Framed, with a word on it."""
+    """Framed, with a message on it."""
     draw = ImageDraw.Draw(picture)
     draw.rectangle((0, 0, film.width - 1, film.height - 1), outline=ALARM, width=2)
     lines = wrapped(text, lambda line: film.font.getlength(line) <= film.width - 4 * MARGIN)
@@ -104,7 +104,7 @@ def panel(film: Film, take: int, frame: int) -> Image.Image:
 
 
 def legend(film: Film, width: int) -> Image.Image:
-    """What the colours mean: strain over the permitted one."""
+    """What the colours mean: strain over its limit."""
     shades, end = film.header["legend"], film.header["legend_end"]
     strip = Image.new("RGB", (width, 2 * film.line + MARGIN), BACKGROUND)
     bar = min(width - 2 * MARGIN, 360)
@@ -154,7 +154,7 @@ def save_mp4(film: Film, out: Path) -> None:
     with tempfile.TemporaryFile() as errors, subprocess.Popen(command, stdin=subprocess.PIPE, stderr=errors) as ffmpeg:
         assert ffmpeg.stdin is not None
         try:
-            for image in moving(film):  # of even width and height, which the format asks for
+            for image in moving(film):  # cropped to even width and height, which the format requires
                 image.crop((0, 0, image.width // 2 * 2, image.height // 2 * 2)).save(ffmpeg.stdin, "PPM")
             ffmpeg.stdin.close()
         except BrokenPipeError:

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""One page that tells what result files found: findings in words, ranks to hide solvers in, a table to sort, every figure,
-and the paper's claims. It needs nothing but a browser, and no network.
+"""One page on what result files found: findings in words, ranks from which solvers can be hidden, a sortable table, every
+figure, and the paper's claims. It needs only a browser and no network.
 
     plots/report.py report.json --out report.html
 
@@ -35,7 +35,7 @@ FIRST = ("drape", "strain")  # the question that most readers come with
 
 
 def table(head: Iterable[str], rows: Iterable[list[str]]) -> str:
-    """Scrolled sideways where it is wide; the first cell of a row names it."""
+    """Scrolls sideways if it is wide; the first cell of a row names it."""
     columns = "".join(f'<th scope="col">{name}</th>' for name in head)
     lines = "".join(f'<tr><th scope="row">{escape(name)}</th>' + "".join(f"<td>{escape(cell)}</td>" for cell in cells) + "</tr>\n"
                     for name, *cells in rows)
@@ -45,7 +45,7 @@ def table(head: Iterable[str], rows: Iterable[list[str]]) -> str:
 # ---- findings ---------------------------------------------------------------------------------------------------------
 
 def findings(found: list[Json]) -> str:
-    """The program's own. The answer that most readers come for, of the largest drape over strain, is first, and large."""
+    """The program's own. The answer that most readers come for, the largest drape over strain, is first and large."""
     def rank(one: Json) -> tuple[bool, int]:
         first = (one["scene"], one["sweep"]) == FIRST
         return not first, -one["vertices"] if first else 0
@@ -62,7 +62,7 @@ def findings(found: list[Json]) -> str:
 # ---- figures ----------------------------------------------------------------------------------------------------------
 
 def picture(name: str, draw: Callable[[], Figure]) -> str:
-    """A figure as SVG that cannot run anything."""
+    """A figure as an SVG that cannot run scripts."""
     figure, svg = draw(), io.StringIO()
     figure.savefig(svg, format="svg", metadata={"Date": None, "Creator": None})
     title = escape(" ".join(figure.texts[0].get_text().split()) if figure.texts else name)
@@ -71,7 +71,7 @@ def picture(name: str, draw: Callable[[], Figure]) -> str:
             f'<figcaption>{title} <a download="{name}.svg" data-of="figure-{name}" href="#figure-{name}">SVG</a></figcaption></figure>\n')
 
 
-# ---- what the scripts work on, as one JSON document: labels of solvers, and a row a point --------------------------------------------------------
+# ---- the scripts' data, one JSON document: labels of solvers, and a row a point ------------------------------------------
 
 def _samples(point: Json) -> list[float]:
     return (point["seconds_per_simulated_second"] or {"samples": []})["samples"]
@@ -91,7 +91,7 @@ FIELDS: dict[str, Callable[[Json], Any]] = {
 
 
 def embedded(results: dict[Path, Result]) -> Json:
-    """The legends are taken together."""
+    """The legends of all files are merged."""
     return {
         "columns": ["file", *FIELDS],
         "points": [[file, *(read(point) for read in FIELDS.values())]
@@ -103,7 +103,7 @@ def embedded(results: dict[Path, Result]) -> Json:
 
 
 def repeat_command(result: Result) -> str:
-    """The command that made the file, without what names files; a filter is added for one point."""
+    """The command that made the file, without options that name files; the page adds a filter for one point."""
     words = iter(result.context.get("command", [])[1:])
     kept = ["./bench"]
     for word in words:
@@ -115,7 +115,7 @@ def repeat_command(result: Result) -> str:
 
 
 def script_text(value: Any) -> str:
-    """As the text of a script element: nothing in it ends that element, whatever a file calls its solvers."""
+    """JSON as the text of a script element, which no solver's name can end."""
     text = json.dumps(value, separators=(",", ":"), allow_nan=False)
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 

@@ -14,7 +14,6 @@
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 #include <btBulletDynamicsCommon.h>
 
-#include <cmath>
 #include <string>
 
 #include "contestants/common/engine.h"

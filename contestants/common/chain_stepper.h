@@ -1,5 +1,5 @@
-// What engines in joint coordinates share: links in place of vertices, and one angle a link as long
-// as the chain stays in the plane of x and y.
+// Base of engines in joint coordinates: links in place of vertices, with one angle each as long as
+// the chain stays in the plane of x and y.
 #pragma once
 
 #include "contestants/common/engine.h"
@@ -16,8 +16,8 @@ class ChainStepper : public EngineStepper {
         poses_(links_.count()),
         flat_(options.start && planar(links_, problem(), *options.start)) {}
 
-  // The poses of a state. Once it leaves the plane, the engine's chain is built for space from
-  // there on, or counters would not repeat.
+  // Sets the poses of a state. Once it leaves the plane, the engine's chain is built for space and
+  // stays so, or counters would not repeat.
   StepResult find(const State& state) {
     if (flat_ && !planar(links_, problem(), state)) {
       flat_ = false;
@@ -33,7 +33,7 @@ class ChainStepper : public EngineStepper {
   bool flat_;
 
  private:
-  void build() override = 0;  // the engine's chain, for flat_
+  void build() override = 0;  // the engine's chain, flat or not
 };
 
 }  // namespace engines

@@ -73,9 +73,9 @@ class EngineStepper : public inextensible::Stepper {
   virtual StepResult step(double h) = 0;
   // Positions and velocities of the vertices that are not pinned.
   virtual void take_out(const State& start, Positions& x, Positions& v) = 0;
-  // What a step that may still be refused must not change.
+  // Updates what a refused step must leave as it was.
   virtual void accept(const Positions& /*x*/, const Positions& /*v*/) {}
-  // After an exception what the engine holds is not to be trusted.
+  // Rebuilds the engine after an exception, when its state cannot be trusted.
   virtual void build() {}
 
   StepResult solve(const State& state, double h, Positions& x) final try {

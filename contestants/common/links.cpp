@@ -77,10 +77,11 @@ bool find_poses(const Links& links, const State& state, bool planar, LinkPoses& 
     e /= distance;
     poses[i].axes = planar ? axes_in_plane(e) : axes_along(e);
     const Eigen::Vector3d across = e.cross(state.v.col(vertex) - velocity_before) / links.length[i];
-    poses[i].rate = planar ? across : across + e.dot(rate_before) * e;
+    const Eigen::Vector3d rate = planar ? across : across + e.dot(rate_before) * e;
+    poses[i].rate = rate - rate_before;
     from = state.x.col(vertex);
     velocity_before = state.v.col(vertex);
-    rate_before = poses[i].rate;
+    rate_before = rate;
   }
   return true;
 }

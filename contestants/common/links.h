@@ -1,6 +1,6 @@
-// A chain that hangs from one pinned end, as links in place of vertices: what engines in joint
-// coordinates (reduced coordinates) are made from and set from. No header of the library, for
-// engines whose headers are older than C++20.
+// A chain that hangs from one pinned end, as links in place of vertices, for engines in joint
+// (reduced) coordinates. Includes no header of the library, because some engines' headers are not
+// C++20.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,7 +13,7 @@ struct State;
 
 namespace engines {
 
-// Link i leads to vertex[i], which bears mass[i], from vertex[i - 1]; the first from the pin.
+// Link i ends at vertex[i], of mass[i], and begins at vertex[i - 1]; link 0 begins at the pin.
 struct Links {
   // Throws std::invalid_argument, saying why, for a problem that is no such chain.
   explicit Links(const inextensible::Problem& problem);
@@ -25,21 +25,20 @@ struct Links {
   std::vector<double> length, mass;
 };
 
-// How a link lies and turns.
+// Orientation and rotation of a link.
 struct LinkPose {
   Eigen::Matrix3d axes;  // the link's own, as columns: the first along it, the third z in a plane
-  Eigen::Vector3d rate;  // rad/s; no link spins about itself against the one before it
+  Eigen::Vector3d rate;  // rad/s, against the link before it, without spin about itself
 };
 
 using LinkPoses = std::vector<LinkPose>;
 
-// Whether the chain lies, moves and weighs in the plane of x and y: one angle a link is enough.
+// Whether positions, velocities and gravity are in the plane of x and y: one angle a link suffices.
 bool planar(const Links& links, const inextensible::Problem& problem,
             const inextensible::State& state);
 
-// How the links lie and turn in a state; `poses` has one for each. Lengths are the chain's,
-// whatever the state's: what of a velocity is along its link is lost. False if a link has no
-// direction.
+// Finds the pose of every link in a state. Lengths are the chain's, not the state's, so velocities
+// along a link are lost. False if a link has no direction.
 bool find_poses(const Links& links, const inextensible::State& state, bool planar,
                 LinkPoses& poses);
 

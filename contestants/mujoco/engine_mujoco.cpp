@@ -11,7 +11,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <limits>
@@ -35,8 +34,8 @@ struct Free {
 // MuJoCo's own ends the program, once the user has pressed Enter.
 [[noreturn]] void throw_error(const char* message) { throw std::runtime_error(message); }
 
-// Numbers that a step may need at a time, more than MuJoCo guesses: for the derivatives of the
-// implicit integrator four matrices of a body's six velocities by all joint velocities.
+// Numbers on the stack of a step, more than MuJoCo reserves: the derivatives of the implicit
+// integrator need four matrices of a body's six velocities by all joint velocities.
 std::size_t stack_size(std::size_t velocities, int integrator) {
   const std::size_t derivatives = integrator == mjINT_IMPLICIT ? 32 * velocities * velocities : 0;
   return 10'000 + 1000 * velocities + derivatives;
@@ -47,7 +46,7 @@ constexpr int bodies_a_file = 80;
 
 std::string file_name(int part) { return "links" + std::to_string(part) + ".xml"; }
 
-// Bodies from `first` on, each in the one before it, and the rest of the chain in the last.
+// Bodies from `first` on, each nested in the one before it; the last one includes the next file.
 std::string bodies_text(const Links& links, int hinges, int first) {
   std::ostringstream text;
   text.precision(std::numeric_limits<double>::max_digits10);
@@ -65,7 +64,7 @@ std::string bodies_text(const Links& links, int hinges, int first) {
   return text.str();
 }
 
-// The model's files, which include each other, the first one first.
+// The model's files; each includes the next one.
 std::vector<std::string> model_files(const Links& links, const Eigen::Vector3d& gravity, int hinges,
                                      int integrator) {
   std::ostringstream text;
@@ -150,7 +149,6 @@ class MujocoChain final : public engines::ChainStepper {
     const StepResult found = find(state);
     if (!found) return found;
     Eigen::Quaterniond before = Eigen::Quaterniond::Identity();
-    Eigen::Vector3d rate_before = Eigen::Vector3d::Zero();
     for (int i = 0; i < links_.count(); ++i) {
       const Eigen::Matrix3d& axes = poses_[i].axes;
       const Eigen::Quaterniond turned(axes);
@@ -158,12 +156,10 @@ class MujocoChain final : public engines::ChainStepper {
       mjtNum* quaternion = model_->body_quat + 4 * (i + 1);
       quaternion[0] = against.w();
       for (int c = 0; c < 3; ++c) quaternion[1 + c] = against.vec()[c];
-      const Eigen::Vector3d rate = poses_[i].rate - rate_before;
       mjtNum* qvel = data_->qvel + hinges() * i;
-      qvel[0] = rate.dot(axes.col(2));
-      if (hinges() == 2) qvel[1] = rate.dot(axes.col(1));
+      qvel[0] = poses_[i].rate.dot(axes.col(2));
+      if (hinges() == 2) qvel[1] = poses_[i].rate.dot(axes.col(1));
       before = turned;
-      rate_before = poses_[i].rate;
     }
     mju_zero(data_->qpos, model_->nq);
     std::memset(data_->warning, 0, sizeof(data_->warning));
@@ -173,7 +169,7 @@ class MujocoChain final : public engines::ChainStepper {
   StepResult step(double h) override {
     model_->opt.timestep = h;
     mj_step(model_.get(), data_.get());
-    // After one of these it has reset itself.
+    // After one of these warnings MuJoCo has reset itself.
     for (const int warning : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC}) {
       if (data_->warning[warning].number != 0)
         return {Status::not_finite, 0, -1, 0, "MuJoCo met a number above 1e10"};

@@ -11,17 +11,12 @@
 // a refused step does not advance.
 #include <ode/ode.h>
 
-#include <cmath>
-#include <string>
-
 #include "contestants/common/engine.h"
 
 namespace {
 
 using inextensible::Problem;
-using inextensible::State;
 using inextensible::Status;
-using inextensible::StepResult;
 
 // ODE's own ends the program.
 [[noreturn]] void throw_error(int /*number*/, const char* /*message*/, va_list /*values*/) {

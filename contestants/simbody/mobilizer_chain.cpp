@@ -39,7 +39,7 @@ struct MobilizerChain::Parts {
   SimTK::State start;
   std::unique_ptr<SimTK::Integrator> integrator;
 
-  // Line orientations want the link along z, pins turn about z.
+  // Line orientations need the link along z; pins turn about z.
   void add_link(double length, double mass) {
     const SimTK::Vec3 end = pins ? SimTK::Vec3(length, 0, 0) : SimTK::Vec3(0, 0, length);
     const SimTK::Body::Rigid body(SimTK::MassProperties(mass, end, SimTK::Inertia(end, mass)));
@@ -53,7 +53,7 @@ struct MobilizerChain::Parts {
     ends.push_back(end);
   }
 
-  // against: the axes, in those of the link before; own_rate: what it turns faster, in its own.
+  // against: the axes in those of the previous link; own_rate: against that link, in own axes.
   void set(std::size_t link, const Eigen::Matrix3d& against, const Eigen::Vector3d& own_rate) {
     SimTK::MobilizedBody& body = bodies[link];
     if (pins) {
@@ -86,13 +86,11 @@ MobilizerChain::~MobilizerChain() = default;
 
 void MobilizerChain::set(const LinkPoses& poses) {
   Eigen::Matrix3d before = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d rate_before = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < poses.size(); ++i) {
     Eigen::Matrix3d axes = poses[i].axes;
     if (!parts_->pins) axes << poses[i].axes.col(1), poses[i].axes.col(2), poses[i].axes.col(0);
-    parts_->set(i, before.transpose() * axes, axes.transpose() * (poses[i].rate - rate_before));
+    parts_->set(i, before.transpose() * axes, axes.transpose() * poses[i].rate);
     before = axes;
-    rate_before = poses[i].rate;
   }
   parts_->start.setTime(0);
   parts_->integrator->initialize(parts_->start);

@@ -1,4 +1,4 @@
-// The chain as Simbody has it. Simbody's headers are not C++20, so that they stay behind this one.
+// Simbody's chain. This header hides Simbody's own, which are not C++20.
 #pragma once
 
 #include <memory>
@@ -22,9 +22,9 @@ class MobilizerChain {
   static constexpr const char* integrators[] = {"merson", "fehlberg", "verlet"};
 
   void set(const LinkPoses& poses);
-  // To `h` later. False if Simbody's steps became too many, or too short. Whatever Simbody throws.
+  // Steps by `h`. False if Simbody's steps became too many, or too short. Throws what Simbody does.
   bool step(double h);
-  // Tried since set().
+  // Attempted since set().
   int internal_steps() const;
 
   struct Point {

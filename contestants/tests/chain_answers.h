@@ -1,11 +1,11 @@
-// What engines in joint coordinates must fulfil, each test once for an engine.
+// Tests that every engine in joint coordinates must pass.
 #pragma once
 
 #include "contestants/tests/known_scenes.h"
 
 namespace engines {
 
-// fine: settings whose error of a second is far below 1e-6 at steps of 1 ms.
+// fine: settings whose error after a second is far below 1e-6 at steps of 1 ms.
 inline void expect_a_chain(const std::string& solver, const Settings& fine) {
   EXPECT_LT(pendulum_error(solver, 1000, fine), 1e-8);
 
@@ -29,7 +29,7 @@ inline void expect_a_chain(const std::string& solver, const Settings& fine) {
   EXPECT_NEAR(angular_momentum(swirl, end).y(), angular_momentum(swirl, swirl.start).y(), 1e-7);
 }
 
-// What goes in comes out: in no time nothing changes.
+// A step of almost no time changes nothing.
 inline void expect_copies(const std::string& solver) {
   for (const Scene& scene : {chain(9), chain(9, 0.7), swirling_chain(9)}) {
     const auto after = run(solver, scene, 1e-12, 1);
@@ -39,8 +39,8 @@ inline void expect_copies(const std::string& solver) {
   }
 }
 
-// Vertices may be numbered in any order, masses and lengths may differ: two unlike links, released
-// level, whose first accelerations are known: tan of none, so both fall as free bodies would turn.
+// Vertices may be numbered in any order, masses and lengths may differ. Level links carry no load
+// across them: every vertex falls freely at first.
 inline void expect_unlike_links(const std::string& solver) {
   ProblemParts parts;
   parts.mass = {0.3, 1, 2};  // vertex 1 is the pin, then 2, then 0
@@ -50,7 +50,6 @@ inline void expect_unlike_links(const std::string& solver) {
   Positions x = Positions::Zero(3, 3);
   x.row(0) << 1.75, 1, 1.25;
   const Scene scene = finished(parts, x, Positions::Zero(3, 3));
-  // Level links carry no load across them: every vertex falls freely at first.
   const double h = 1e-5;
   const auto after = run(solver, scene, h, 1);
   EXPECT_NEAR(after.v(1, 0), -9.81 * h, 1e-9);
@@ -58,8 +57,7 @@ inline void expect_unlike_links(const std::string& solver) {
   EXPECT_LT(largest_strain(scene, run(solver, scene, 1e-3, 100)), 1e-12);
 }
 
-// A stepper that was made in a plane, and leaves it, is as one that was made in space, settings and
-// all.
+// A stepper made in a plane that leaves it equals one made in space, including its settings.
 inline void expect_leaves_the_plane(const std::string& solver, const Settings& settings) {
   const Scene flat = chain(5), swirl = swirling_chain(5);
   const auto leaves = make(solver, flat, settings), stays = make(solver, swirl, settings);
@@ -82,7 +80,7 @@ inline void expect_collapse_refused(const std::string& solver) {
   expect_refusal_without_trace(solver, scene, collapsed, 1e-3);
 }
 
-// Others are refused, and why is said.
+// Other problems are refused with a reason.
 inline void expect_chains_only(const std::string& solver) {
   const auto expect_unsupported = [&solver](const Scene& scene, const std::string& why) {
     try {

@@ -1,4 +1,4 @@
-// Scenes whose motion, or part of it, theory knows, and what the tests of engines share.
+// Scenes whose motion, or part of it, theory knows, and what the engines' tests share.
 #pragma once
 
 #include <dlfcn.h>
@@ -8,7 +8,6 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
-#include <set>
 #include <string>
 
 #include "solvers/plugin.h"
@@ -29,10 +28,9 @@ struct Scene {
   State start;
 };
 
-// A plug-in's rows, in the registry; once.
+// Adds a plug-in's rows to the registry, once.
 inline void load(const std::string& plugin) {
-  static std::set<std::string> loaded;
-  if (!loaded.insert(plugin).second) return;
+  if (inextensible::find_backend(plugin)) return;
   void* library = dlopen((PLUGIN_FOLDER "/" + plugin + ".so").c_str(), RTLD_NOW | RTLD_LOCAL);
   ASSERT_TRUE(library) << dlerror();
   const auto entry =
@@ -66,10 +64,8 @@ inline Scene chain(int links, double turn = 0) {
 
 // The same, straight down.
 inline Scene hanging_chain(int links) {
-  Scene scene = chain(links);
-  scene.start.x.row(1) = -scene.start.x.row(0);
-  scene.start.x.row(0).setZero();
-  return scene;
+  const inextensible::testing::HangingRope rope(links, 1.0 / links, 1.0 / links);
+  return {rope.problem, rope.start};
 }
 
 // The same, bent and moving in all directions, every link at its length.
@@ -105,16 +101,14 @@ inline Scene spinning_net(int n, double omega) {
   return finished(parts, x, v);
 }
 
-// Makes a stepper of the plug-in with this name, and loads the plug-in first.
+// A stepper of the plug-in with this name.
 inline std::unique_ptr<inextensible::Stepper> make(const std::string& solver, const Scene& scene,
                                                    const Settings& settings = {}) {
   load(solver);
-  inextensible::BackendOptions options{0.01, 1, settings};
-  options.start = &scene.start;
-  return inextensible::make_stepper(solver, scene.problem, options);
+  return inextensible::make_stepper(solver, scene.problem, {0.01, 1, settings, &scene.start});
 }
 
-// The state after that many steps, all of which must be taken.
+// The state after that many steps, none of which may be refused.
 inline State run(const std::string& solver, const Scene& scene, double h, int steps,
                  const Settings& settings = {}) {
   const auto stepper = make(solver, scene, settings);
@@ -127,8 +121,12 @@ inline State run(const std::string& solver, const Scene& scene, double h, int st
   return state;
 }
 
+// About the origin.
 inline Eigen::Vector3d angular_momentum(const Scene& scene, const State& state) {
-  return inextensible::testing::angular_momentum(*scene.problem, state.x, state.v);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int i = 0; i < scene.problem->vertices(); ++i)
+    sum += scene.problem->mass()[i] * state.x.col(i).head<3>().cross(state.v.col(i).head<3>());
+  return sum;
 }
 
 inline double largest_strain(const Scene& scene, const State& state) {
@@ -139,7 +137,7 @@ inline double distance(const Positions& a, const Positions& b) {
   return (a - b).colwise().norm().maxCoeff();
 }
 
-// ---- What every engine must fulfil ----
+// ---- What every engine must pass ----
 
 // A link that is released level hangs down after a quarter of its period; the distance, m.
 inline double pendulum_error(const std::string& solver, int steps, const Settings& settings = {}) {
@@ -150,7 +148,7 @@ inline double pendulum_error(const std::string& solver, int steps, const Setting
   return (end.x.col(1) + Eigen::Vector3d::UnitY()).norm();
 }
 
-// An impossible step is refused, leaves the state as it was, and nothing behind for the next.
+// An impossible step is refused, leaves the state unchanged and does not affect the next step.
 inline void expect_refusal_without_trace(const std::string& solver, const Scene& scene,
                                          const State& impossible, double h) {
   const auto stepper = make(solver, scene), fresh = make(solver, scene);
@@ -165,7 +163,7 @@ inline void expect_refusal_without_trace(const std::string& solver, const Scene&
   EXPECT_TRUE(after.x == expected.x && after.v == expected.v);
 }
 
-// A step that takes numbers beyond what doubles hold.
+// A step whose numbers overflow.
 inline void expect_overflow_refused(const std::string& solver) {
   const Scene scene = chain(5);
   State fast = scene.start;
@@ -173,14 +171,14 @@ inline void expect_overflow_refused(const std::string& solver) {
   expect_refusal_without_trace(solver, scene, fast, 1e10);
 }
 
-// For engines of first order that take vertices: the error of a pendulum halves with the step.
+// For engines of first order: the error of a pendulum halves with the step.
 inline void expect_first_order(const std::string& solver) {
   const double coarse = pendulum_error(solver, 1000), fine = pendulum_error(solver, 2000);
   EXPECT_LT(fine, 0.01);
   EXPECT_NEAR(std::log2(coarse / fine), 1, 0.1);
 }
 
-// What flies freely goes on as it was, momentum and all, and never falls asleep.
+// Free flight keeps its momentum and never falls asleep.
 inline void expect_free_flight(const std::string& solver) {
   Scene scene = spinning_net(4, 0);
   scene.start.v.colwise() = Eigen::Vector3d(3, -2, 1);
@@ -191,7 +189,7 @@ inline void expect_free_flight(const std::string& solver) {
   EXPECT_LT(distance(run(solver, scene, h, 1000).v, scene.start.v), 1e-10);
 }
 
-// Two vertices on a spring alone swing with omega^2 = 2 k / m, and keep their middle.
+// Two vertices on a spring swing with omega^2 = 2 k / m about their fixed middle.
 inline void expect_spring(const std::string& solver) {
   ProblemParts parts;
   parts.mass = {1, 1};

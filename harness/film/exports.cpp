@@ -15,13 +15,13 @@ std::string written(const std::string& path, const std::string& text) {
   return path;
 }
 
-// A mesh of a film: the cloth of a take, or the body beside it.
+// A mesh of a film: the cloth of a run, or the body.
 struct Part {
   std::string name;  // of its files
   std::vector<std::array<int, 3>> triangles;
   std::vector<std::array<int, 2>> edges;
-  const inextensible::Problem* problem;  // whose edges they are; null: there are none
-  bool stays;                            // one frame is all
+  const inextensible::Problem* problem;  // that owns the edges; null: no edges
+  bool stays;                            // does not move: one frame is enough
   std::function<inextensible::Positions(std::size_t frame)> at;
 
   std::string file(std::size_t frame, const char* extension) const {
@@ -51,37 +51,31 @@ std::string vtp_text(const Part& part, const inextensible::Positions& x) {
   strains.resize(strains.size() + part.triangles.size());
   std::ostringstream out;
   out.precision(9);
-  const auto array = [&out](const char* type, const char* name, int components, auto&& values) {
+  const auto array = [&out](const char* type, const char* name, int components,
+                            const auto& values) {
     out << "<DataArray type=\"" << type << "\" Name=\"" << name << "\" NumberOfComponents=\""
         << components << "\" format=\"ascii\">";
-    values();
+    for (const auto value : values) out << value << ' ';
     out << "</DataArray>\n";
   };
   const auto cells = [&](const char* kind, const auto& all) {
+    std::vector<int> vertices, ends;
+    for (const auto& cell : all) {
+      vertices.insert(vertices.end(), cell.begin(), cell.end());
+      ends.push_back(static_cast<int>(vertices.size()));
+    }
     out << '<' << kind << ">\n";
-    array("Int32", "connectivity", 1, [&] {
-      for (const auto& cell : all) {
-        for (const int v : cell) out << v << ' ';
-      }
-    });
-    array("Int32", "offsets", 1, [&] {
-      std::size_t end = 0;
-      for (const auto& cell : all) out << (end += cell.size()) << ' ';
-    });
+    array("Int32", "connectivity", 1, vertices);
+    array("Int32", "offsets", 1, ends);
     out << "</" << kind << ">\n";
   };
   out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" "
          "byte_order=\"LittleEndian\">\n<PolyData>\n<Piece NumberOfPoints=\""
       << x.cols() << "\" NumberOfVerts=\"0\" NumberOfLines=\"" << part.edges.size()
       << "\" NumberOfStrips=\"0\" NumberOfPolys=\"" << part.triangles.size() << "\">\n<CellData>\n";
-  array("Float64", "strain", 1, [&] {
-    for (const double strain : strains) out << strain << ' ';
-  });
+  array("Float64", "strain", 1, strains);
   out << "</CellData>\n<Points>\n";
-  array("Float64", "positions", 3, [&] {
-    for (Eigen::Index i = 0; i < x.cols(); ++i)
-      out << x(0, i) << ' ' << x(1, i) << ' ' << x(2, i) << ' ';
-  });
+  array("Float64", "positions", 3, x.reshaped());
   out << "</Points>\n";
   cells("Lines", part.edges);
   cells("Polys", part.triangles);
@@ -94,23 +88,22 @@ void append(std::string& bytes, Number number) {
   bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
 }
 
-// The take must outlive them.
+// The run must outlive the parts.
 std::vector<Part> parts_of(const Recording& recording, const FilmRun& take,
                            const std::string& name) {
-  const FilmScene& stage = recording.stage;
-  const inextensible::Problem* problem = stage.scene.problem.get();
+  const inextensible::Problem* problem = recording.scene.problem.get();
   std::vector<Part> parts{
-      {name, stage.scene.triangles, {}, problem, false, [&take](std::size_t frame) {
+      {name, recording.scene.triangles, {}, problem, false, [&take](std::size_t frame) {
          return take.frames[frame];
        }}};
   for (const auto& [a, b] : problem->edges()) parts[0].edges.push_back({a, b});
-  if (!stage.body.vertices.empty())
+  if (!recording.body.vertices.empty())
     parts.push_back({name + "-body",
-                     stage.body.triangles,
+                     recording.body.triangles,
                      {},
                      nullptr,
-                     stage.body_poses.empty(),
-                     [&stage](std::size_t frame) { return body_at(stage, frame); }});
+                     recording.body_poses.empty(),
+                     [&recording](std::size_t frame) { return body_at(recording, frame); }});
   return parts;
 }
 
@@ -129,7 +122,7 @@ std::string pc2_bytes(const Part& part, std::size_t frames) {
   return bytes;
 }
 
-// One file a frame, or one of a body that stays; their paths.
+// Writes one file a frame, or one for a body that does not move; returns their paths.
 std::vector<std::string> write_frames(const std::vector<Part>& parts, const FilmRun& take,
                                       const std::string& folder, const char* extension,
                                       std::string (*text)(const Part&,

@@ -1,6 +1,6 @@
-// Films: the positions of a scene's vertices at the frames of a film, by several solvers; pictures
-// of every take at some frames, by the same camera, with light and shadow (ray tracing by Embree),
-// strain as colour, and yarns as lines on the cloth; and files for other programs.
+// Films: vertex positions of a scene at the frames of a film, by several solvers; ray-traced
+// pictures (Embree) of every run by one camera, with strain as colour and yarns as lines on the
+// cloth; and files for other programs.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -22,7 +22,7 @@ struct FilmSpec {
   std::string scene;
   SceneParameters parameters;  // complete
   Contestants solvers;
-  std::vector<double> strain_limits;  // every solver at each
+  std::vector<double> strain_limits;  // every solver runs at each of them
   double step = 0.01;                 // s; shortened to a whole part of a frame
   double frames_per_second = 30;
 };
@@ -34,35 +34,30 @@ struct FilmRun {
   double step = 0;                              // s
   std::string detail;                           // why it ended early; empty: it did not
   std::string energy_gained;                    // why it fails the energy check; empty: it passes
-  std::vector<inextensible::Positions> frames;  // from the start on
+  std::vector<inextensible::Positions> frames;  // the first is the start
   std::vector<double> largest_strain;           // of each frame, as delivered
   double smallest_step = 0;                     // s; a step that is refused is halved
-  std::vector<double> seconds;                  // of wall time, each frame but the first took
-};
-
-// What there is to see besides vertices.
-struct FilmScene {
-  Scene scene;
-  inextensible::TriangleMesh body;             // empty: no obstacle
-  std::vector<inextensible::Pose> body_poses;  // of each frame; empty: it stays
+  std::vector<double> seconds;                  // wall time of each frame but the first
 };
 
 struct Recording {
   FilmSpec spec;
-  FilmScene stage;
+  Scene scene;
+  inextensible::TriangleMesh body;             // empty: no obstacle
+  std::vector<inextensible::Pose> body_poses;  // at each frame; empty: it does not move
   std::vector<FilmRun> takes;
 };
 
-// Number of frames of the whole film: the one at the start, and as many as the scene's duration
-// has.
+// Number of frames of the whole film, including the one at the start.
 std::size_t frames_in(const FilmSpec& spec);
 
-// Springs get the stiffness that keeps the limit. told: of every frame. Throws Interrupted.
+// Springs get the stiffness that keeps the limit. told is called after every frame. Throws
+// Interrupted.
 Recording record(const FilmSpec& spec, const std::function<bool()>& interrupted,
                  const std::function<void(const FilmRun&)>& told);
 
-// Where the body's corners are at a frame.
-inextensible::Positions body_at(const FilmScene& stage, std::size_t frame);
+// The body's vertices at a frame.
+inextensible::Positions body_at(const Recording& recording, std::size_t frame);
 
 // ---- the camera ----
 
@@ -79,20 +74,20 @@ struct View {
   Eigen::Vector3d ray(double x, double y) const;
 };
 
-// Sees body and cloth of all takes at the frames that are shown, as long as the cloth stays near
-// the body, or near where it started: what falls off leaves the picture, and does not make it
-// small. A take that has ended is shown as it was last.
+// Sees the body and the cloth of all runs at these frames. Cloth that falls far from the body (or
+// from its start) leaves the picture instead of making it small. A run that has ended early is
+// shown at its last frame.
 View view_of(const Recording& recording, const std::vector<std::size_t>& frames);
 
 // ---- light and colours (tracer.cpp) ----
 
-// Light is computed in linear colours from 0 to 1, files hold sRGB.
+// Light is computed in linear colours from 0 to 1; files hold sRGB.
 Eigen::Vector3d linear(const Eigen::Vector3d& srgb);
-std::array<std::uint8_t, 3> shade(const Eigen::Vector3d& rgb);  // in sRGB, of a linear colour
+std::array<std::uint8_t, 3> shade(const Eigen::Vector3d& rgb);  // linear to sRGB
 
-// What a picture shows at one time; the stage must outlive it.
+// What a picture shows at one time; the recording must outlive it.
 struct Shot {
-  const FilmScene& stage;         // without triangles its edges are drawn, as a rope
+  const Recording& recording;     // a scene without triangles is drawn as a rope
   inextensible::Positions cloth;  // m
   // Which sides of each triangle are yarns: 1 from corner 0 to 1, 2 from 1 to 2, 4 from 2 to 0.
   std::vector<std::uint8_t> yarns = {};
@@ -100,7 +95,7 @@ struct Shot {
   inextensible::Positions body = {};  // m; empty: none
   double yarn = 0;                    // half the width of a line, or the radius of a rope, m
   double yarn_shade = 0;              // how much darker a line is: 0 to 1
-  double thickness = 0;  // so far the cloth may lie inside the body, and is seen nevertheless, m
+  double thickness = 0;               // depth inside the body at which cloth is still visible, m
 };
 
 struct Pixels {
@@ -108,8 +103,8 @@ struct Pixels {
   std::vector<std::uint8_t> rgb;  // rows from above, sRGB
 };
 
-// Samples a pixel: samples x samples. Every pixel takes the same pattern of rays, so that flat
-// cloth has one shade. Usable from several threads.
+// Takes samples x samples rays a pixel, in the same pattern for every pixel, so that flat cloth has
+// one shade. Safe to call from several threads.
 Pixels trace(const Shot& shot, const View& view, int width, int samples);
 
 // ---- pictures ----
@@ -120,35 +115,31 @@ struct PictureSpec {
   int samples = 2;                  // a pixel has samples x samples
 };
 
-// What a take shows at a frame.
 Shot shot_of(const Recording& recording, const View& view, std::size_t take, std::size_t frame,
              int width);
 
-// Into a folder that is there: <take>-<frame>.ppm for each frame that the take has, and its last
-// one if it ended early; film.json with the width, the height, the frames, what is said of each
-// take, and the colours of strain over its limit from 0 to legend_end. On all cores. told: how many
-// of all are done. Throws FileError, Interrupted.
+// Writes <take>-<frame>.ppm for each frame that a run has (its last one if it ended early) into an
+// existing folder, using all cores, and film.json, which plots/film.py reads. Throws FileError,
+// Interrupted.
 void write_pictures(const std::string& folder, const Recording& recording, const PictureSpec& spec,
                     const std::function<bool()>& interrupted,
                     const std::function<void(std::size_t done, std::size_t all)>& told);
 
 // ---- for other programs (exports.cpp) ----
 
-// A take as files that other programs read. All write into a folder, which is made, and return the
-// paths of what to open. A body beside the cloth has files of its own, <name>-body...: one where it
-// stays, else as many as the cloth.
+// Each function writes a run into an existing folder and returns the paths to open. A body has
+// files of its own, <name>-body...: one if it does not move, else as many as the cloth.
 
-// Wavefront OBJ, one file a frame, <name>-0001.obj and so on: faces of a cloth, lines of a chain.
+// Wavefront OBJ, one file a frame (<name>-0001.obj ...), with faces for cloth and lines for chains.
 std::vector<std::string> write_obj(const Recording& recording, const FilmRun& take,
                                    const std::string& folder, const std::string& name);
 
-// VTK XML for ParaView: a .vtp a frame with the strain of every edge as a field, and a .pvd that
-// plays them.
+// VTK XML for ParaView: a .vtp a frame with every edge's strain as a field, and a .pvd that plays
+// them.
 std::vector<std::string> write_vtk(const Recording& recording, const FilmRun& take,
                                    const std::string& folder, const std::string& name);
 
-// The first frame as OBJ and a point cache (PC2) for Blender's modifier "Mesh Cache", which reads
-// it as an animated object.
+// The first frame as OBJ, and a point cache (PC2) for Blender's modifier "Mesh Cache".
 std::vector<std::string> write_pc2(const Recording& recording, const FilmRun& take,
                                    const std::string& folder, const std::string& name);
 

@@ -26,23 +26,18 @@ constexpr double line_spacing = 7;  // pixels between yarns, below which their l
 
 // Cloth's own colour up to the limit, warm beyond it; linear. `over_limit`: strain over its limit.
 Eigen::Vector3d strain_colour(double over_limit) {
-  struct Stop {
-    double at;
-    Eigen::Vector3d rgb;
-  };
   // Four times the limit is as red as it gets.
-  static const std::array<Stop, 5> stops{{{0, {0.80, 0.78, 0.72}},
-                                          {0.5, {0.58, 0.70, 0.80}},
-                                          {1, {0.25, 0.50, 0.75}},
-                                          {1.5, {0.95, 0.70, 0.25}},
-                                          {4, {0.80, 0.12, 0.10}}}};
+  static const std::vector<std::pair<double, Eigen::Vector3d>> stops{
+      {0, {0.80, 0.78, 0.72}},   {0.5, {0.58, 0.70, 0.80}}, {1, {0.25, 0.50, 0.75}},
+      {1.5, {0.95, 0.70, 0.25}}, {4, {0.80, 0.12, 0.10}},
+  };
   for (std::size_t i = 1; i < stops.size(); ++i) {
-    if (!(over_limit < stops[i].at)) continue;
-    const double part =
-        std::max(0.0, over_limit - stops[i - 1].at) / (stops[i].at - stops[i - 1].at);
-    return linear(Eigen::Vector3d(stops[i - 1].rgb + part * (stops[i].rgb - stops[i - 1].rgb)));
+    const auto& [low, from] = stops[i - 1];
+    const auto& [high, to] = stops[i];
+    if (over_limit < high)
+      return linear(from + std::max(0.0, over_limit - low) / (high - low) * (to - from));
   }
-  return linear(stops.back().rgb);
+  return linear(stops.back().second);
 }
 
 // Colour of each vertex, by the largest strain of its edges.
@@ -106,22 +101,21 @@ void on_all_cores(std::size_t count, const std::function<void(std::size_t)>& wor
 
 Shot shot_of(const Recording& recording, const View& view, std::size_t take, std::size_t frame,
              int width) {
-  const FilmScene& stage = recording.stage;
   const FilmRun& shown = recording.takes.at(take);
-  Shot shot{.stage = stage, .cloth = shown.frames.at(frame)};
-  shot.colours = colours_of(*stage.scene.problem, shot.cloth, shown.strain_limit);
-  if (!stage.body.vertices.empty()) shot.body = body_at(stage, frame);
-  const std::vector<double>& lengths = stage.scene.problem->rest_length();
+  Shot shot{.recording = recording, .cloth = shown.frames.at(frame)};
+  shot.colours = colours_of(*recording.scene.problem, shot.cloth, shown.strain_limit);
+  if (!recording.body.vertices.empty()) shot.body = body_at(recording, frame);
+  const std::vector<double>& lengths = recording.scene.problem->rest_length();
   const double edge = std::accumulate(lengths.begin(), lengths.end(), 0.0) /
                       std::max(1.0, static_cast<double>(lengths.size()));  // m, the mean
   const double distance = (view.eye - view.centre).norm();
   const double pixel = 2 * view.tangent * distance / width;  // m
   shot.thickness = std::clamp(0.25 * edge, 0.004 * view.size, 0.03 * view.size);
-  if (stage.scene.triangles.empty()) {
+  if (recording.scene.triangles.empty()) {
     shot.yarn = std::max(1.2 * pixel, std::min(0.009 * view.size, 0.25 * edge));
     return shot;
   }
-  shot.yarns = yarns_of(stage.scene);
+  shot.yarns = yarns_of(recording.scene);
   shot.yarn = std::clamp(0.05 * edge, 0.4 * pixel, 0.9 * pixel);
   shot.yarn_shade = 0.5 * std::min(1.0, edge / (line_spacing * pixel));
   return shot;
@@ -157,7 +151,7 @@ void write_pictures(const std::string& folder, const Recording& recording, const
                      {"energy_gained", take.energy_gained},
                      {"frames", take.frames.size()},
                      {"largest_strain", take.largest_strain},
-                     {"sag", sags(recording.stage.scene, take)},
+                     {"sag", sags(recording.scene, take)},
                      {"seconds", take.seconds}});
   const json header{
       {"width", spec.width},     {"height", view.height(spec.width)},
@@ -176,57 +170,36 @@ using inextensible::Positions;
 
 constexpr double half_angle = 12 * std::numbers::pi / 180;
 constexpr double margin = 1.06;
-// How far cloth is followed, over the radius of all at the start: about a body, and without one.
+// Distance up to which cloth stays in view, over the radius of the start: with a body, and without.
 constexpr double near_body = 1.1, near_start = 3;
 
 using Box = Eigen::AlignedBox3d;
 
-void extend(Box& box, const Positions& x) {
-  for (const auto& point : x.colwise())
-    if (point.allFinite()) box.extend(Vector3d(point));
-}
-
-// The points that are no farther from `middle` than `followed`.
-Positions near(const Positions& x, const Vector3d& middle, double followed) {
-  Positions kept(3, x.cols());
-  Eigen::Index count = 0;
-  for (const auto& point : x.colwise())
-    if ((point - middle).norm() <= followed) kept.col(count++) = point;
-  return kept.leftCols(count);
-}
-
-// All that the camera must see.
-std::vector<Positions> in_sight(const Recording& recording,
-                                const std::vector<std::size_t>& frames) {
-  const FilmScene& stage = recording.stage;
+// All points that the camera must see.
+std::vector<Vector3d> in_sight(const Recording& recording, const std::vector<std::size_t>& frames) {
   const Positions& start = recording.takes.at(0).frames.at(0);
-  const bool body = !stage.body.vertices.empty();
-  const Positions body_start = body ? body_at(stage, 0) : start;
-  Box about;
-  extend(about, body_start);
-  const Vector3d at_first = about.center();
+  const bool body = !recording.body.vertices.empty();
+  const Positions body_start = body ? body_at(recording, 0) : start;
+  const Vector3d at_first =
+      Box(body_start.rowwise().minCoeff(), body_start.rowwise().maxCoeff()).center();
   double reach = 0;
   for (const Positions* x : {&start, &body_start})
     reach = std::max(reach, (x->colwise() - at_first).colwise().norm().maxCoeff());
   const double followed = (body ? near_body : near_start) * reach;
-  std::vector<Positions> all;
+  std::vector<Vector3d> all;
   for (const FilmRun& take : recording.takes) {
     for (const std::size_t shown : frames) {
       const std::size_t frame = std::min(shown, take.frames.size() - 1);
       Vector3d middle = at_first;
-      if (!stage.body_poses.empty())
-        middle = stage.body_poses.at(frame)(stage.body_poses[0].inverse()(middle));
-      all.push_back(near(take.frames[frame], middle, followed));
-      if (body) all.push_back(body_at(stage, frame));
+      if (!recording.body_poses.empty())
+        middle = recording.body_poses.at(frame)(recording.body_poses[0].inverse()(middle));
+      for (const auto& point : take.frames[frame].colwise())
+        if ((point - middle).norm() <= followed) all.emplace_back(point);
+      const Positions around = body_at(recording, frame);  // empty where there is no body
+      for (const auto& corner : around.colwise()) all.emplace_back(corner);
     }
   }
   return all;
-}
-
-bool in_a_plane(const std::vector<Positions>& all) {
-  Box box;
-  for (const Positions& x : all) extend(box, x);
-  return box.sizes().z() < 1e-3 * box.sizes().maxCoeff();
 }
 
 }  // namespace
@@ -240,25 +213,26 @@ Vector3d View::ray(double x, double y) const {
 }
 
 View view_of(const Recording& recording, const std::vector<std::size_t>& frames) {
-  const std::vector<Positions> all = in_sight(recording, frames);
+  const std::vector<Vector3d> all = in_sight(recording, frames);
+  Box whole;
+  for (const Vector3d& point : all) whole.extend(point);
+  const bool in_a_plane = whole.sizes().z() < 1e-3 * whole.sizes().maxCoeff();
   View view;
   view.tangent = std::tan(half_angle);
-  view.towards = (in_a_plane(all) ? Vector3d(0, 0.12, 1) : Vector3d(0.55, 0.45, 1)).normalized();
+  view.towards = (in_a_plane ? Vector3d(0, 0.12, 1) : Vector3d(0.55, 0.45, 1)).normalized();
   view.right = Vector3d::UnitY().cross(view.towards).normalized();
   view.up = view.towards.cross(view.right);
   Eigen::Matrix3d axes;
   axes << view.right.transpose(), view.up.transpose(), view.towards.transpose();
   Box box;
-  for (const Positions& x : all) extend(box, axes * x);
+  for (const Vector3d& point : all) box.extend(axes * point);
   const Vector3d middle = box.center(), half = (0.5 * box.sizes()).cwiseMax(1e-6);
   view.aspect = std::clamp(half.y() / half.x(), 0.5, 1.3);
   double distance = 0;
-  for (const Positions& x : all) {
-    for (const auto& point : x.colwise()) {
-      const Vector3d p = axes * point - middle;
-      const double wide = std::max(std::abs(p.x()), std::abs(p.y()) / view.aspect);
-      if (p.allFinite()) distance = std::max(distance, margin * wide / view.tangent + p.z());
-    }
+  for (const Vector3d& point : all) {
+    const Vector3d p = axes * point - middle;
+    const double wide = std::max(std::abs(p.x()), std::abs(p.y()) / view.aspect);
+    distance = std::max(distance, margin * wide / view.tangent + p.z());
   }
   view.size = std::max(half.x(), half.y());
   view.centre = axes.transpose() * middle;

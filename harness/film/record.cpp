@@ -37,13 +37,13 @@ inextensible::Settings calibrated(const FilmSpec& spec, const Contestant& contes
   return settings;
 }
 
-// A step that cannot be solved may cost a hundred thousand passes, and as many again at each of its
-// halves. A run gives up where all its steps together, refused ones too, need more than this.
+// A step that cannot be solved may cost 100,000 passes, and as many again at each of its halves. A
+// run gives up once all its steps, including refused ones, have needed more than this.
 constexpr int most_halvings = 8;
 constexpr std::int64_t spare_tries = 1000, tries_per_step = 100;
 constexpr std::int64_t spare_iterations = 500'000, iterations_per_step = 10'000;
 
-// Why a run is to give up after so many of its steps; "": it is not.
+// Why a run must give up after this many steps; "": it need not.
 std::string too_much_work(const inextensible::WorkCounters& work, long steps) {
   const std::int64_t tries = work.steps + work.rejected_steps;
   if (tries > spare_tries + tries_per_step * steps)
@@ -111,36 +111,35 @@ FilmRun take_of(const FilmSpec& spec, const Scene& scene, double energy_bound,
   return take;
 }
 
-// A body that moves does work: it can throw cloth at twice its own speed at most, as an elastic
+// A moving body does work: it can throw cloth at no more than twice its own speed, as an elastic
 // impact does, and lift it as far as it rises itself.
-double energy_bound_of(const FilmScene& stage, double frames_per_second) {
-  const Scene& scene = stage.scene;
+double energy_bound_of(const Recording& recording) {
+  const Scene& scene = recording.scene;
   if (std::isfinite(scene.energy_bound)) return scene.energy_bound;
-  const inextensible::Positions start = body_at(stage, 0);
+  const inextensible::Positions start = body_at(recording, 0);
   inextensible::Positions before = start;
-  double longest_way = 0, rise = 0;  // m, of a corner, from frame to frame and in all
-  for (std::size_t frame = 1; frame < stage.body_poses.size(); ++frame) {
-    const inextensible::Positions now = body_at(stage, frame);
+  double longest_way = 0, rise = 0;  // m, of any vertex, between two frames and in all
+  for (std::size_t frame = 1; frame < recording.body_poses.size(); ++frame) {
+    const inextensible::Positions now = body_at(recording, frame);
     longest_way = std::max(longest_way, (now - before).colwise().norm().maxCoeff());
     rise = std::max(rise, (now - start).row(1).maxCoeff());
     before = now;
   }
   const inextensible::Problem& problem = *scene.problem;
-  const double work =
-      problem.total_mass() *
-      (0.5 * std::pow(2 * longest_way * frames_per_second, 2) + problem.gravity().norm() * rise);
+  const double work = problem.total_mass() *
+                      (0.5 * std::pow(2 * longest_way * recording.spec.frames_per_second, 2) +
+                       problem.gravity().norm() * rise);
   return Scene{}.energy_bound + work / energy_scale(scene);
 }
 
 }  // namespace
 
-inextensible::Positions body_at(const FilmScene& stage, std::size_t frame) {
+inextensible::Positions body_at(const Recording& recording, std::size_t frame) {
   const inextensible::Pose pose =
-      stage.body_poses.empty() ? inextensible::Pose{} : stage.body_poses.at(frame);
-  const std::vector<Eigen::Vector3d>& corners = stage.body.vertices;
-  inextensible::Positions x(3, corners.size());
-  for (std::size_t i = 0; i < corners.size(); ++i)
-    x.col(static_cast<Eigen::Index>(i)) = pose(corners[i]);
+      recording.body_poses.empty() ? inextensible::Pose{} : recording.body_poses.at(frame);
+  const auto& vertices = recording.body.vertices;
+  inextensible::Positions x(3, vertices.size());
+  std::transform(vertices.begin(), vertices.end(), x.colwise().begin(), pose);
   return x;
 }
 
@@ -151,16 +150,16 @@ std::size_t frames_in(const FilmSpec& spec) {
 
 Recording record(const FilmSpec& spec, const std::function<bool()>& interrupted,
                  const std::function<void(const FilmRun&)>& told) {
-  Recording recording{spec, {find_scene(spec.scene)->build(spec.parameters), {}, {}}, {}};
-  const Scene& scene = recording.stage.scene;
+  Recording recording{spec, find_scene(spec.scene)->build(spec.parameters), {}, {}, {}};
+  const Scene& scene = recording.scene;
   const auto* body = dynamic_cast<const inextensible::TriangleCollider*>(scene.problem->collider());
-  if (body) recording.stage.body = body->mesh();
+  if (body) recording.body = body->mesh();
   if (const auto& motion = scene.problem->body_motion()) {
     for (std::size_t i = 0; i < frames_in(spec); ++i)
-      recording.stage.body_poses.push_back(
+      recording.body_poses.push_back(
           motion(scene.start.time + static_cast<double>(i) / spec.frames_per_second));
   }
-  const double energy_bound = energy_bound_of(recording.stage, spec.frames_per_second);
+  const double energy_bound = energy_bound_of(recording);
   for (const double limit : spec.strain_limits) {
     for (const Contestant& contestant : spec.solvers)
       recording.takes.push_back(

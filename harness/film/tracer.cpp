@@ -27,7 +27,7 @@ constexpr float far_away = std::numeric_limits<float>::infinity();
 const Vector3d background = linear(Vector3d(0.97, 0.97, 0.98));
 const Vector3d body_colour = linear(Vector3d(0.78, 0.74, 0.72));
 
-// Weighted by the areas of the triangles about each vertex.
+// Vertex normals, weighted by the areas of the adjacent triangles.
 Matrix3Xd normals_of(const Positions& x, const Triangles& triangles) {
   Matrix3Xd sums = Matrix3Xd::Zero(3, x.cols());
   for (const auto& t : triangles) {
@@ -62,10 +62,9 @@ Value* buffer(const Owned<RTCGeometry>& geometry, RTCBufferType type, RTCFormat 
 Owned<RTCGeometry> triangle_geometry(RTCDevice device, const Positions& x,
                                      const Triangles& triangles) {
   Owned<RTCGeometry> made(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
-  auto* points = buffer<float[3]>(made, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3,
+  auto* points = buffer<Vector3f>(made, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3,
                                   static_cast<std::size_t>(x.cols()));
-  for (Eigen::Index i = 0; i < x.cols(); ++i)
-    for (Eigen::Index k = 0; k < 3; ++k) points[i][k] = static_cast<float>(x(k, i));
+  for (Eigen::Index i = 0; i < x.cols(); ++i) points[i] = x.col(i).cast<float>();
   auto* corners =
       buffer<std::array<int, 3>>(made, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles.size());
   std::copy(triangles.begin(), triangles.end(), corners);
@@ -73,7 +72,7 @@ Owned<RTCGeometry> triangle_geometry(RTCDevice device, const Positions& x,
   return made;
 }
 
-// Balls about vertices, or the cylinders with round ends that start at each second one of them.
+// Spheres about vertices, or round-ended cylinders between consecutive pairs of them.
 Owned<RTCGeometry> round_geometry(RTCDevice device, const Shot& shot, RTCGeometryType type,
                                   const std::vector<int>& vertices, double radius) {
   Owned<RTCGeometry> made(rtcNewGeometry(device, type));
@@ -116,7 +115,7 @@ double open(RTCScene scene, const Vector3d& from, const Vector3d& to, double beg
 
 // ---- Light ----
 
-// The nearest point that a ray meets.
+// The nearest intersection of a ray.
 struct Hit {
   double distance = std::numeric_limits<double>::infinity();
   unsigned geometry = 0, primitive = 0;
@@ -124,7 +123,7 @@ struct Hit {
   Vector3d face = Vector3d::UnitY();  // normal of what was hit, not of length 1
 };
 
-// What is seen where a ray meets cloth or body.
+// What a ray sees of cloth or body.
 struct Surface {
   Vector3d point, normal, colour;
   double shine = 0;
@@ -135,13 +134,14 @@ class Tracer {
   Tracer(const Shot& shot, const View& view, int samples)
       : shot_(shot), view_(view), count_(samples * samples), device_(rtcNewDevice("threads=1")) {
     if (!device_) throw std::runtime_error("Embree cannot start");
-    normals_ = normals_of(shot.cloth, shot.stage.scene.triangles);
-    body_normals_ = normals_of(shot.body, shot.stage.body.triangles);
-    const auto body = triangle_geometry(device_.get(), shot.body, shot.stage.body.triangles);
+    normals_ = normals_of(shot.cloth, shot.recording.scene.triangles);
+    body_normals_ = normals_of(shot.body, shot.recording.body.triangles);
+    const auto body = triangle_geometry(device_.get(), shot.body, shot.recording.body.triangles);
     body_ = scene_of(device_.get(), {body.get()});
-    if (shot.stage.scene.triangles.empty()) {
+    if (shot.recording.scene.triangles.empty()) {
       std::vector<int> ends, vertices(static_cast<std::size_t>(shot.cloth.cols()));
-      for (const auto& [a, b] : shot.stage.scene.problem->edges()) ends.insert(ends.end(), {a, b});
+      for (const auto& [a, b] : shot.recording.scene.problem->edges())
+        ends.insert(ends.end(), {a, b});
       std::iota(vertices.begin(), vertices.end(), 0);
       const auto rope = round_geometry(device_.get(), shot, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE,
                                        ends, shot.yarn),
@@ -150,7 +150,8 @@ class Tracer {
       cloth_ = scene_of(device_.get(), {rope.get(), knots.get()});
       all_ = scene_of(device_.get(), {rope.get(), knots.get(), body.get()});
     } else {
-      const auto cloth = triangle_geometry(device_.get(), shot.cloth, shot.stage.scene.triangles);
+      const auto cloth =
+          triangle_geometry(device_.get(), shot.cloth, shot.recording.scene.triangles);
       cloth_ = scene_of(device_.get(), {cloth.get()});
       all_ = scene_of(device_.get(), {cloth.get(), body.get()});
     }
@@ -173,11 +174,11 @@ class Tracer {
     const double apart = std::max(1e-4 * view_.size, shot_.thickness);
     if (std::isinf(cloth.distance) && std::isinf(body.distance)) return background;
     if (cloth.distance < body.distance + shot_.thickness)
-      return lit(shot_.stage.scene.triangles.empty() ? on_rope(cloth, direction)
-                                                     : on_cloth(cloth, direction),
+      return lit(shot_.recording.scene.triangles.empty() ? on_rope(cloth, direction)
+                                                         : on_cloth(cloth, direction),
                  direction, sample, apart);
     Surface surface = on_triangle(body, direction, shot_.body,
-                                  shot_.stage.body.triangles[body.primitive], body_normals_);
+                                  shot_.recording.body.triangles[body.primitive], body_normals_);
     surface.colour = body_colour;
     surface.shine = 0.06;
     return lit(surface, direction, sample, apart);
@@ -202,8 +203,8 @@ class Tracer {
   }
 
   // The shading normal, towards the viewer, and a point on the smooth surface that the corners'
-  // normals describe (Hanika, Hacking the shadow terminator, 2021): shadows of a coarse mesh's flat
-  // triangles on each other would show them.
+  // normals describe (Hanika, Hacking the shadow terminator, 2021), so that the flat triangles of a
+  // coarse mesh cast no visible shadows on each other.
   Surface on_triangle(const Hit& hit, const Vector3d& direction, const Positions& x,
                       const std::array<int, 3>& corners, const Matrix3Xd& normals) const {
     const double facing = hit.face.dot(direction) > 0 ? -1 : 1;
@@ -224,9 +225,9 @@ class Tracer {
     return surface;
   }
 
-  // How much of a yarn's line is at a point: 0 to 1.
+  // Coverage of a point by a yarn's line, 0 to 1.
   double line(const Hit& hit) const {
-    const auto& t = shot_.stage.scene.triangles[hit.primitive];
+    const auto& t = shot_.recording.scene.triangles[hit.primitive];
     const unsigned drawn = shot_.yarns[hit.primitive];
     if (drawn == 0) return 0;
     const double twice_area = hit.face.norm();
@@ -242,7 +243,7 @@ class Tracer {
   }
 
   Surface on_cloth(const Hit& hit, const Vector3d& direction) const {
-    const auto& corners = shot_.stage.scene.triangles[hit.primitive];
+    const auto& corners = shot_.recording.scene.triangles[hit.primitive];
     Surface surface = on_triangle(hit, direction, shot_.cloth, corners, normals_);
     for (std::size_t k = 0; k < 3; ++k)
       surface.colour += hit.weight[k] * shot_.colours.col(corners[k]);
@@ -256,7 +257,7 @@ class Tracer {
     surface.point = view_.eye + hit.distance * direction;
     surface.normal = hit.face.normalized();
     if (hit.geometry == 0) {
-      const auto [a, b] = shot_.stage.scene.problem->edges()[hit.primitive];
+      const auto [a, b] = shot_.recording.scene.problem->edges()[hit.primitive];
       surface.colour = hit.weight[0] * shot_.colours.col(a) + hit.weight[1] * shot_.colours.col(b);
     } else {
       surface.colour = shot_.colours.col(hit.primitive);
@@ -323,8 +324,8 @@ Pixels trace(const Shot& shot, const View& view, int width, int samples) {
     for (int column = 0; column < pixels.width; ++column) {
       Vector3d sum = Vector3d::Zero();
       for (int sample = 0; sample < samples * samples; ++sample) {
-        const int row_inside = sample / samples, column_inside = sample % samples;
-        const double right = (column_inside + 0.5) / samples, down = (row_inside + 0.5) / samples;
+        const double right = (sample % samples + 0.5) / samples;
+        const double down = (sample / samples + 0.5) / samples;
         const Vector3d direction =
             view.ray(2 * (column + right) / pixels.width - 1, 1 - 2 * (row + down) / pixels.height);
         sum += tracer.colour(direction, sample);

@@ -4,9 +4,9 @@ from matplotlib import colormaps
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FuncFormatter, NullFormatter
+from matplotlib.ticker import LogLocator
 
-from parts.axes import grid
+from parts.axes import grid, set_ticks
 from parts.result import Figures, Json, Result
 from parts.sheet import RIGHT, make_sheet
 from parts.style import DARK_GREY, LIGHT_GREY
@@ -33,8 +33,7 @@ def draw(place: Json, result: Result) -> Figure:
     sheet = make_sheet(result, f"{subject(scene, vertices)}: which strain a frame's time buys", caption, NAMES + WIDTH + RIGHT, height + 0.25,
                        finding=" ".join(found[:1]))
     axes = sheet.axes(NAMES, sheet.bottom, WIDTH, height)
-    axes.set_xscale("log")
-    axes.set(ylim=(len(rows) - 0.4, -1), xlabel="ms a frame of 1/60 s, in 99 of 100 frames")
+    axes.set(xscale="log", ylim=(len(rows) - 0.4, -1), xlabel="ms a frame of 1/60 s, in 99 of 100 frames")
     for budget in BUDGETS:
         axes.axvline(budget, color=DARK_GREY, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1)
     shades = {limit: to_hex(colormaps["Blues"](0.25 + 0.75 * k / (len(limits) - 1))) for k, limit in enumerate(limits)}  # darker: less strain
@@ -46,8 +45,7 @@ def draw(place: Json, result: Result) -> Figure:
     axes.legend(handles=[_mark(shades[limit], [], [], label=percent(limit)) for limit in limits], loc="lower left", frameon=False, fontsize=8,
                 bbox_to_anchor=(0, 1), borderaxespad=0, ncol=len(limits), handletextpad=0.1, columnspacing=1.2)
     axes.set_yticks(range(len(rows)), [shorten(result.label(name), NAMES - 0.2, 8) for name in rows])
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda ms, _: f"{ms:g}"))
-    axes.xaxis.set_minor_formatter(NullFormatter())
+    set_ticks(axes.xaxis, LogLocator(), LogLocator(subs=range(2, 10)))
     axes.tick_params(axis="y", length=0)
     grid(axes)
     return sheet.figure

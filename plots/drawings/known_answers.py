@@ -40,9 +40,7 @@ def draw(result: Result) -> Figure:
         row, column = divmod(number, COLUMNS)
         axes = sheet.axes(LEFT + column * (WIDTH + ACROSS), sheet.bottom + (rows - 1 - row) * (HEIGHT + DOWN), WIDTH, HEIGHT)
         _draw_answer(axes, answer, [row for row in result.document["rows"] if row["answer"] == answer["name"]], styles)
-        if column == 0:
-            axes.set_ylabel("|deviation|")
-        axes.set_xlabel("time step (s)")
+        axes.set(xlabel="time step (s)", ylabel="" if column else "|deviation|")
         if number == columns - 1:
             add_legend(axes, styles)
     return sheet.figure

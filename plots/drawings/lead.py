@@ -3,8 +3,9 @@ published time stepper (the stepper's share), and how many times as long the nex
 share)."""
 
 from matplotlib.figure import Figure
-from matplotlib.ticker import NullLocator
+from matplotlib.ticker import FixedLocator, NullLocator
 
+from parts.axes import set_ticks
 from parts.result import Figures, Json, Result
 from parts.sheet import RIGHT, make_sheet
 from parts.style import BLACK, BLUE, GREY, ORANGE, SKY
@@ -53,11 +54,8 @@ def draw(plane: Json, result: Result) -> Figure:
                 text, right = f" {lead['value']:.2g}  {result.label(cell[name])}", max(high, 1)
             axes.text(right, y, text, va="center", fontsize=6.5)
     most = max(cell[ratio]["value"] for cell in cells for _, ratio, *_ in SHARES if cell[ratio])
-    axes.set_xscale("log")
-    axes.set(xlim=(1, 8 * most), ylim=(len(cells), 0), xlabel="times the leader's time")
-    axes.set_xticks([tick for tick in TICKS if tick <= 4 * most])
-    axes.xaxis.set_major_formatter(lambda tick, _: f"{tick:g}")
-    axes.xaxis.set_minor_locator(NullLocator())
+    axes.set(xscale="log", xlim=(1, 8 * most), ylim=(len(cells), 0), xlabel="times the leader's time")
+    set_ticks(axes.xaxis, FixedLocator([tick for tick in TICKS if tick <= 4 * most]), NullLocator())
     axes.set_yticks([k + 0.5 for k in range(len(cells))],
                     [f"{percent(cell['strain_limit'])}: {result.label(cell['first'])}" for cell in cells])
     axes.tick_params(axis="y", length=0)

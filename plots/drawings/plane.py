@@ -30,7 +30,7 @@ def draw(plane: Json, result: Result) -> Figure:
                        NARROW + LEFT / 2 + width + RIGHT, height + 0.3,
                        finding=" ".join(result.finding(plane["scene"], plane["sweep"], plane["vertices"])))
     axes = sheet.axes(NARROW, sheet.bottom, width, height)
-    axes.set(xlim=(0, len(levels)), ylim=(len(limits), 0))
+    axes.set(xlim=(0, len(levels)), ylim=(len(limits), 0), xlabel="error over the scene's size", ylabel="strain limit")
     for number, cell in enumerate(plane["cells"]):
         row, column = divmod(number, len(levels))
         _draw_cell(axes, column, row, cell, styles, result)
@@ -39,7 +39,6 @@ def draw(plane: Json, result: Result) -> Figure:
     axes.set_yticks([k + 0.5 for k in range(len(limits))], [percent(limit) for limit in limits])
     axes.xaxis.tick_top()
     axes.tick_params(length=0)
-    axes.set(xlabel="error over the scene's size", ylabel="strain limit")
     axes.xaxis.set_label_position("bottom")
     axes.spines[:].set_visible(False)
     return sheet.figure

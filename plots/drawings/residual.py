@@ -4,9 +4,9 @@
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from matplotlib.ticker import LogLocator
 
-from parts.axes import grid, log_log, steps_on_x
+from parts.axes import grid, log_log, set_ticks, steps_on_x
 from parts.result import Figures, Result
 from parts.runs import Series, StepSweep, step_sweeps_in
 from parts.sheet import GAP, LEFT, MAIN_HEIGHT, MAIN_WIDTH, make_sheet, scene_sentence
@@ -59,9 +59,7 @@ def _draw_over_time(axes: Axes, by_step: ByStep, color: str) -> None:
         axes.plot(time, last, color=color, alpha=opacity, linewidth=1.4,
                   label=f"last iteration, h = {step_name(step)} s")
     axes.set(xlabel="time (s)", ylabel="mean |F| (m)")
-    axes.yaxis.set_major_locator(LogLocator())
-    axes.yaxis.set_major_formatter(FuncFormatter(lambda y, _: f"{y:.0e}"))
-    axes.yaxis.set_minor_formatter(NullFormatter())
+    set_ticks(axes.yaxis, LogLocator(), LogLocator(subs=range(2, 10)), lambda y: f"{y:.0e}")
     axes.legend(frameon=False, fontsize=7.5, loc="best")
 
 

@@ -1,4 +1,4 @@
-// The ranks of the best points at one place of a sweep, solvers that are hidden left out.
+// Ranks of the best points at one place of a sweep, without hidden solvers.
 (() => {
   const choice = document.getElementById("contest-choice");
   if (!choice) return;

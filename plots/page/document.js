@@ -1,9 +1,9 @@
 "use strict";
-// What all parts share: the data, and elements made without ever reading text as markup.
+// Shared by all parts: the data, and elements whose text is never read as markup.
 const data = JSON.parse(document.getElementById("data").textContent);
 const points = data.points.map((row) => Object.fromEntries(data.columns.map((name, index) => [name, row[index]])));
 const hidden = new Set();  // solvers
-const onHide = [];         // what is to be done when it changes
+const onHide = [];         // called when it changes
 
 function element(name, properties = {}, ...children) {
   const made = document.createElement(name);
@@ -25,13 +25,13 @@ const percent = (part) => part === null ? "" : `${Number((100 * part).toPrecisio
 const stepText = (step) => step === null ? "" : step < 0.5 ? `1/${Number((1 / step).toPrecision(4))} s` : `${step} s`;
 const words = (name) => (name.startsWith("mesh:") ? name.slice(5).split(",")[0].split("/").pop() : name.replaceAll("_", " "));
 
-// What repeats one point: the run that made it, with a filter that keeps this id alone.
+// The command that repeats one point: that of its run, with a filter that keeps only this id.
 function commandOf(point) {
   const pattern = `^${point.id.replace(/[.*+?^${}()|[\]\\]/g, "\\$&")}$`;
   return `${data.files[point.file].command} --filter '${pattern.replaceAll("'", "'\\''")}'`;
 }
 
-// What is behind a point, in words.
+// A point's measurements, in words.
 function story(point) {
   const parts = [data.labels[point.solver], point.id];
   if (point.seconds !== null) {
@@ -61,7 +61,7 @@ function repeatButton(place, point) {
   return button;
 }
 
-// The picture that is shown is the file: it need not be in the page twice.
+// The picture shown is also the download: it need not be in the page twice.
 for (const link of document.querySelectorAll("a[data-of]")) {
   link.href = document.getElementById(link.dataset.of).querySelector("img").src;
 }

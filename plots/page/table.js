@@ -1,4 +1,4 @@
-// All points, to sort and to filter by words.
+// All points, sorted by column and filtered by words.
 (() => {
   const table = document.getElementById("points-table");
   if (!table) return;

@@ -12,7 +12,7 @@ from parts.words import step_name
 COARSEST_STEP = 1 / 25  # the ladder of steps starts here (docs/measuring.md)
 
 
-def _ticks(axis: Axis, major: Locator, minor: Locator, text=lambda value: f"{value:g}") -> None:
+def set_ticks(axis: Axis, major: Locator, minor: Locator, text=lambda value: f"{value:g}") -> None:
     axis.set_major_locator(major)
     axis.set_minor_locator(minor)
     axis.set_major_formatter(FuncFormatter(lambda value, _: text(value)))
@@ -23,7 +23,7 @@ def _log(axis: Axis, values: list[float], room: float, *ticks) -> None:
     """A logarithmic axis that reaches beyond all values by a factor."""
     name = axis.axis_name
     axis.axes.set(**{f"{name}scale": "log", f"{name}lim": (min(values) / room, max(values) * room)})
-    _ticks(axis, *ticks)
+    set_ticks(axis, *ticks)
 
 
 def log_x(axes: Axes, ticks: list[float], inches: float) -> None:
@@ -56,7 +56,7 @@ def steps_on_x(axes: Axes, steps: list[float]) -> None:
     for step in sorted(set(steps), reverse=True):
         if not ladder or step < 0.95 * ladder[-1]:
             ladder.append(step)
-    _ticks(axes.xaxis, FixedLocator(ladder[::math.ceil(len(ladder) / 6)]), NullLocator(), step_name)
+    set_ticks(axes.xaxis, FixedLocator(ladder[::math.ceil(len(ladder) / 6)]), NullLocator(), step_name)
 
 
 def log_steps_on_y(axes: Axes, steps: list[float]) -> None:
@@ -80,12 +80,7 @@ def grid(axes: Axes) -> None:
 
 def draw_slopes(axes: Axes, from_right: bool = False) -> None:
     """Faint lines of slope 1 and 2 through the lower left corner, or through the upper right one, to read the curves' slopes against."""
-    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
-    for power in (1, 2):
-        if from_right:
-            end = max(left, right * (low / high) ** (1 / power))
-            line = [end, right], [high * (end / right) ** power, high]
-        else:
-            end = min(right, left * (high / low) ** (1 / power))
-            line = [left, end], [low, low * (end / left) ** power]
-        axes.plot(*line, color=GREY, linewidth=0.6, linestyle=(0, (1, 3)), zorder=1)
+    ends, corner = axes.get_xlim(), int(from_right)
+    for power in (1, 2):  # clipped at the axes
+        line = [axes.get_ylim()[corner] * (x / ends[corner]) ** power for x in ends]
+        axes.plot(ends, line, color=GREY, linewidth=0.6, linestyle=(0, (1, 3)), zorder=1)

@@ -8,7 +8,7 @@ from matplotlib.text import Annotation
 from matplotlib.ticker import NullLocator
 from matplotlib.transforms import ScaledTranslation
 
-from parts.axes import gap, log_steps_on_y
+from parts.axes import gap, log_steps_on_y, set_ticks
 from parts.result import Json
 from parts.sheet import LEFT, ROW_HEIGHT, Sheet
 from parts.style import DARK_GREY, LIGHT_GREY, Styles, line_of
@@ -84,7 +84,7 @@ def draw_noise(axes: Axes, factor: float | None) -> None:
 # ---- the steps that the fastest runs took -----------------------------------------------------------------------------
 
 def draw_steps(axes: Axes, curves: Curves, styles: Styles) -> None:
-    """Solvers often share a step, so equal ones are fanned out sideways; an arrow where it is the coarsest or the finest of all."""
+    """Solvers often share a step, so equal ones are fanned out sideways; an arrow marks the coarsest or finest step tried."""
     shown = {solver: (style, curves[solver].best) for solver, style in styles.items() if style.prominent and not style.hollow}
     log_steps_on_y(axes, [b.step for _, best in shown.values() for b in best])
     taken: dict[tuple[float, int], list[str]] = {}
@@ -136,13 +136,9 @@ def add_strip(sheet: Sheet, beneath: Axes, rows: Rows, styles: Styles, title: st
         return
     box = beneath.get_position()
     axes = sheet.axes(box.x0 * sheet.width, box.y1 * sheet.height, box.width * sheet.width, ROW_HEIGHT * len(rows))
-    axes.set_facecolor(LIGHT_GREY)
-    axes.set_xscale(beneath.get_xscale())
-    axes.set_xlim(beneath.get_xlim())
-    axes.set_ylim(len(rows) - 0.5, -0.5)
+    axes.set(facecolor=LIGHT_GREY, xscale=beneath.get_xscale(), xlim=beneath.get_xlim(), ylim=(len(rows) - 0.5, -0.5))
     axes.spines[["left", "top"]].set_visible(False)
-    axes.xaxis.set_major_locator(NullLocator())
-    axes.xaxis.set_minor_locator(NullLocator())
+    set_ticks(axes.xaxis, NullLocator(), NullLocator())
     axes.tick_params(axis="y", length=0, labelsize=NAME_SIZE)
     axes.set_yticks(range(len(rows)), [shorten(clean(name), LEFT - 0.15, NAME_SIZE) for name in rows])
     for row, (solver, marks) in enumerate(rows.items()):

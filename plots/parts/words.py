@@ -24,11 +24,8 @@ def clean(text: Any) -> str:
 
 
 def plain(value: Any) -> str:
-    """A value as a reader wants it. Of anything that looks like a path only the last part is shown."""
-    if isinstance(value, list):
-        return clean(" x ".join(plain(item) for item in value))
-    text = clean(f"{value:g}" if isinstance(value, float) else value)
-    return text.rstrip("/").rsplit("/", 1)[-1] if text.startswith(("/", "~", "./", "../")) else text
+    """A value as a reader wants it."""
+    return clean(f"{value:g}" if isinstance(value, float) else value)
 
 
 def percent(fraction: float) -> str:

@@ -28,8 +28,6 @@ class CholmodSolver final : public SpdSolver, CholmodAnalysis {
   ~CholmodSolver() override {
     for (cholmod_dense** dense : {&solution_, &y_, &e_}) cholmod_free_dense(dense, &common);
   }
-  CholmodSolver(const CholmodSolver&) = delete;
-  CholmodSolver& operator=(const CholmodSolver&) = delete;
 
   bool factor() override {
     // LAPACK's Cholesky, inside the supernodal code, lets NaN pass: no pivot compares as negative.

@@ -1,5 +1,3 @@
-#include "solvers/linear/lu.h"
-
 #include <umfpack.h>
 
 #include <Eigen/Core>
@@ -7,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <new>
+
+#include "solvers/linear/spd_solver.h"
 
 extern "C" {  // LAPACK
 void dgttrf_(const int* n, double* dl, double* d, double* du, double* du2, int* ipiv, int* info);
@@ -20,10 +20,10 @@ namespace {
 
 constexpr double singular_rcond = 1e-15;
 
-class UmfpackSolver final : public UnsymmetricSolver {
+class UmfpackSolver final : public DirectSolver {
  public:
   explicit UmfpackSolver(SymmetricPattern pattern)
-      : UnsymmetricSolver(pattern.entries()),
+      : DirectSolver(pattern.entries()),
         pattern_(std::move(pattern)),
         solution_(pattern_.n),
         int_work_(pattern_.n),
@@ -36,8 +36,6 @@ class UmfpackSolver final : public UnsymmetricSolver {
     umfpack_di_free_numeric(&numeric_);
     umfpack_di_free_symbolic(&symbolic_);
   }
-  UmfpackSolver(const UmfpackSolver&) = delete;
-  UmfpackSolver& operator=(const UmfpackSolver&) = delete;
 
   bool factor() override {
     if (!std::all_of(values_.begin(), values_.end(), [](double v) { return std::isfinite(v); }))
@@ -78,32 +76,24 @@ class UmfpackSolver final : public UnsymmetricSolver {
   void* numeric_ = nullptr;
 };
 
-class TridiagonalLuSolver final : public UnsymmetricSolver {
+class TridiagonalLuSolver final : public DirectSolver {
  public:
   explicit TridiagonalLuSolver(int n)
-      : UnsymmetricSolver(3 * n - 2),
-        n_(n),
-        lower_(n),
-        diagonal_(n),
-        upper_(n),
-        upper2_(n),
-        pivot_(n) {}
+      : DirectSolver(3 * n - 2), n_(n), lower_(n), diagonal_(n), upper_(n), upper2_(n), pivot_(n) {}
 
   bool factor() override {
-    double largest = 0;
     const double* value = values_.data();  // column j: (j-1, j), (j, j), (j+1, j)
-    for (std::size_t j = 0; j < diagonal_.size(); ++j) {
+    for (int j = 0; j < n_; ++j) {
       if (j > 0) upper_[j - 1] = *value++;
       diagonal_[j] = *value++;
-      if (j + 1 < diagonal_.size()) lower_[j] = *value++;
-      largest = std::max(largest, std::abs(diagonal_[j]));
+      if (j + 1 < n_) lower_[j] = *value++;
     }
+    const double largest = diagonal_.cwiseAbs().maxCoeff();
     int info = 0;
     dgttrf_(&n_, lower_.data(), diagonal_.data(), upper_.data(), upper2_.data(), pivot_.data(),
             &info);
-    return info == 0 && std::all_of(diagonal_.begin(), diagonal_.end(), [largest](double d) {
-             return std::abs(d) > singular_rcond * largest && std::isfinite(d);
-           });
+    return info == 0 && diagonal_.allFinite() &&
+           diagonal_.cwiseAbs().minCoeff() > singular_rcond * largest;
   }
 
   void solve(double* rhs) override {
@@ -114,21 +104,20 @@ class TridiagonalLuSolver final : public UnsymmetricSolver {
   }
 
   double reciprocal_condition() const override {
-    const auto pivots = Eigen::Map<const Eigen::ArrayXd>(diagonal_.data(), n_).abs();
-    return pivots.minCoeff() / pivots.maxCoeff();
+    return diagonal_.cwiseAbs().minCoeff() / diagonal_.cwiseAbs().maxCoeff();
   }
   double factor_nonzeros() const override { return 5.0 * n_; }
   double factor_flops() const override { return 8.0 * n_; }
 
  private:
   int n_;
-  std::vector<double> lower_, diagonal_, upper_, upper2_;
+  Eigen::VectorXd lower_, diagonal_, upper_, upper2_;
   std::vector<int> pivot_;
 };
 
 }  // namespace
 
-std::unique_ptr<UnsymmetricSolver> make_unsymmetric_solver(SymmetricPattern pattern) {
+std::unique_ptr<DirectSolver> make_lu_solver(SymmetricPattern pattern) {
   if (pattern.chain(1)) return std::make_unique<TridiagonalLuSolver>(pattern.n);
   return std::make_unique<UmfpackSolver>(std::move(pattern));
 }

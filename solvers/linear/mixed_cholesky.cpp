@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "solvers/linear/multifrontal_cholesky.h"
 
@@ -13,9 +14,7 @@ constexpr double roundings = 4 * std::numeric_limits<float>::epsilon();
 constexpr int most_refinements = 6;  // each gains more than two digits, or the factor is no good
 
 double norm(const std::vector<double>& v) {
-  double sum = 0;
-  for (const double value : v) sum += value * value;
-  return std::sqrt(sum);
+  return std::sqrt(std::inner_product(v.begin(), v.end(), v.begin(), 0.0));
 }
 
 }  // namespace

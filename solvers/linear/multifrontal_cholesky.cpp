@@ -215,51 +215,44 @@ void substitute_forward(const Real* l, Distance ld, int n, Real* w) {
   }
 }
 
-// K columns of back substitution: the rows below, then the triangle.
-template <int K, class Real>
+// K columns of back substitution: the rows below, single numbers several at once, then the
+// triangle.
+template <int K, class X, class Real>
 void substitute_back(const Real* l, Distance ld, int n, Real* w) {
-  Lanes<Real> sum[K] = {};
-  for (int i = K; i < n; i += lanes<Real>) {
-    Lanes<Real> value, column;
-    load(w + i, value);
+  constexpr int width = std::is_same_v<X, Real> ? 1 : 4;
+  X x[K];
+#pragma GCC unroll 8
+  for (int c = 0; c < K; ++c) load(w + width * c, x[c]);
+  if constexpr (width == 1) {
+    Lanes<Real> sum[K] = {};
+    for (int i = K; i < n; i += lanes<Real>) {
+      Lanes<Real> value, column;
+      load(w + i, value);
+#pragma GCC unroll 8
+      for (int c = 0; c < K; ++c) {
+        load(l + c * ld + i, column);
+        sum[c] += column * value;
+      }
+    }
 #pragma GCC unroll 8
     for (int c = 0; c < K; ++c) {
-      load(l + c * ld + i, column);
-      sum[c] += column * value;
+      Real total = 0;
+      for (int lane = 0; lane < lanes<Real>; ++lane) total += sum[c][lane];
+      x[c] -= total;
+    }
+  } else {
+    for (int i = K; i < n; ++i) {
+      X value;
+      load(w + width * i, value);
+#pragma GCC unroll 8
+      for (int c = 0; c < K; ++c) x[c] -= l[c * ld + i] * value;
     }
   }
-  Real x[K];
-#pragma GCC unroll 8
-  for (int c = 0; c < K; ++c) {
-    Real total = 0;
-    for (int lane = 0; lane < lanes<Real>; ++lane) total += sum[c][lane];
-    x[c] = w[c] - total;
-  }
 #pragma GCC unroll 8
   for (int c = K - 1; c >= 0; --c) {
 #pragma GCC unroll 8
     for (int r = 0; r < c; ++r) x[r] -= l[r * ld + c] * x[c];
-    w[c] = x[c];
-  }
-}
-
-// The same of rows of four numbers.
-template <int K, class Real>
-void substitute_fours_back(const Real* l, Distance ld, int n, Real* w) {
-  Four<Real> x[K];
-#pragma GCC unroll 8
-  for (int c = 0; c < K; ++c) load(w + 4 * c, x[c]);
-  for (int i = K; i < n; ++i) {
-    Four<Real> value;
-    load(w + 4 * i, value);
-#pragma GCC unroll 8
-    for (int c = 0; c < K; ++c) x[c] -= l[c * ld + i] * value;
-  }
-#pragma GCC unroll 8
-  for (int c = K - 1; c >= 0; --c) {
-#pragma GCC unroll 8
-    for (int r = 0; r < c; ++r) x[r] -= l[r * ld + c] * x[c];
-    store(x[c], w + 4 * c);
+    store(x[c], w + width * c);
   }
 }
 
@@ -272,9 +265,10 @@ struct OfWidth {
 };
 template <class Real, int... smaller>
 constexpr std::array<OfWidth<Real>, panel> of_widths(std::integer_sequence<int, smaller...>) {
-  return {{{take_panel<smaller + 1, Real>, substitute_forward<smaller + 1, Real, Real>,
-            substitute_back<smaller + 1, Real>, substitute_forward<smaller + 1, Four<Real>, Real>,
-            substitute_fours_back<smaller + 1, Real>}...}};
+  return {
+      {{take_panel<smaller + 1, Real>, substitute_forward<smaller + 1, Real, Real>,
+        substitute_back<smaller + 1, Real, Real>, substitute_forward<smaller + 1, Four<Real>, Real>,
+        substitute_back<smaller + 1, Four<Real>, Real>}...}};
 }
 template <class Real>
 constexpr auto of_width = of_widths<Real>(std::make_integer_sequence<int, panel>());

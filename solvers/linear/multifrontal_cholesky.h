@@ -99,7 +99,9 @@ class MixedCholesky final : public SpdSolver {
   // Without a look at the residual where the pivots promise more than `tolerance`. In double
   // precision if refinement does not get there; false if the matrix is not positive definite then.
   bool solve_within(double tolerance, double* rhs) override;
-  double reciprocal_condition() const override { return current().reciprocal_condition(); }
+  double reciprocal_condition() const override {
+    return in_double_ ? double_.reciprocal_condition() : single_.reciprocal_condition();
+  }
   double factor_nonzeros() const override { return single_.factor_nonzeros(); }
   double factor_flops() const override { return single_.factor_flops(); }
 
@@ -109,9 +111,6 @@ class MixedCholesky final : public SpdSolver {
   bool factor_in_double();
   bool refine(double tolerance, double* x);
   void subtract_product(const double* x);
-  const SpdSolver& current() const {
-    return in_double_ ? static_cast<const SpdSolver&>(double_) : single_;
-  }
 
   SymmetricPattern pattern_;
   MultifrontalCholesky<float> single_;

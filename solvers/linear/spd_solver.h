@@ -1,5 +1,4 @@
-// Linear solvers for symmetric positive definite systems that are factored many times with one
-// pattern.
+// Direct solvers for linear systems that are factored many times with one pattern.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,23 +11,35 @@
 namespace inextensible {
 
 // Use: write the matrix to values() in the pattern's order, factor(), solve() any number of times.
-// The matrix is factored in its own order; permute it first (fill_reducing_order).
-class SpdSolver {
+class DirectSolver {
  public:
-  explicit SpdSolver(int entries = 0) : values_(entries) {}
-  virtual ~SpdSolver() = default;
-  SpdSolver(const SpdSolver&) = delete;
-  SpdSolver& operator=(const SpdSolver&) = delete;
+  explicit DirectSolver(int entries) : values_(entries) {}
+  virtual ~DirectSolver() = default;
+  DirectSolver(const DirectSolver&) = delete;
+  DirectSolver& operator=(const DirectSolver&) = delete;
 
   virtual double* values() { return values_.data(); }  // in the pattern's order
-  // false: not finite, or a pivot of L D L^T is not above least_pivot times the diagonal entry that
-  // it came from. (The supernodal code takes any positive pivot.)
-  virtual bool factor() = 0;
+  virtual bool factor() = 0;            // false: singular to working precision, or not finite
+  virtual void solve(double* rhs) = 0;  // overwritten by the solution; after a successful factor()
+  // An estimate, of the last successful factorization: smallest over largest pivot.
+  virtual double reciprocal_condition() const = 0;
+  virtual double factor_nonzeros() const = 0;  // of all factors
+  virtual double factor_flops() const = 0;     // of one factorization
+
+ protected:
+  std::vector<double> values_;
+};
+
+// For symmetric positive definite matrices. They are factored in their own order; permute them
+// first (fill_reducing_order). factor() is false for a pivot of L D L^T that is not above
+// least_pivot times the diagonal entry that it came from. (The supernodal code takes any positive
+// pivot.)
+class SpdSolver : public DirectSolver {
+ public:
+  explicit SpdSolver(int entries = 0) : DirectSolver(entries) {}
   // 0 (the default) takes every positive pivot; 1e-10 refuses matrices in which ten digits are
   // lost.
   void set_least_pivot(double relative) { least_pivot_ = relative; }
-  virtual void solve(
-      double* rhs) = 0;  // n numbers, overwritten by the solution; after a successful factor()
   // Three right-hand sides at once, the coordinates of a vertex in each column; its fourth number
   // means nothing.
   virtual void solve_coordinates(Eigen::Matrix4Xd& rhs);
@@ -39,20 +50,19 @@ class SpdSolver {
     return true;
   }
   static constexpr double tightest = 1e-12;  // tolerance that is sure to be reached
-  // An estimate, of the last successful factorization: smallest over largest pivot of L D L^T.
-  virtual double reciprocal_condition() const = 0;
-  virtual double factor_nonzeros() const = 0;
-  virtual double factor_flops() const = 0;  // of one factorization
 
  protected:
-  std::vector<double> values_;
   double least_pivot_ = 0;
 
  private:
   Eigen::VectorXd one_;  // right-hand side of several
 };
 
-// ---- The list of them: a new one is its file and one row in spd_solvers.cpp ----
+// LU of general sparse matrices: UMFPACK (Davis 2004), or LAPACK's tridiagonal LU where that fits.
+// The pattern has both triangles.
+std::unique_ptr<DirectSolver> make_lu_solver(SymmetricPattern pattern);
+
+// ---- The list of SPD solvers: a new one is its file and one row in spd_solvers.cpp ----
 
 enum class Takes { any, tridiagonal, block_tridiagonal };  // patterns; blocks are 3 x 3
 enum class Precision { full, mixed };                      // of the factors
@@ -61,10 +71,9 @@ struct SpdSolverRow {
   const char* name;
   const char* summary;
   SymmetricPattern::Triangle triangle;  // that it reads
-  Takes takes;
-  bool fills;  // wants rows in an order of little fill; others do without or find their own
-  Precision precision;
+  Takes takes;                          // those of any pattern want rows in an order of little fill
   std::unique_ptr<SpdSolver> (*make)(SymmetricPattern);
+  Precision precision = Precision::full;
 };
 
 std::span<const SpdSolverRow> spd_solvers();

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -7,7 +6,7 @@
 
 namespace inextensible {
 
-// Those that are known by their name alone.
+// Solvers whose classes are private to their files.
 std::unique_ptr<SpdSolver> make_tridiagonal(SymmetricPattern pattern);
 std::unique_ptr<SpdSolver> make_block_tridiagonal(SymmetricPattern pattern);
 std::unique_ptr<SpdSolver> make_cholmod_simplicial(SymmetricPattern pattern);
@@ -22,7 +21,6 @@ std::unique_ptr<SpdSolver> make(SymmetricPattern pattern) {
 
 constexpr auto lower = SymmetricPattern::Triangle::lower;
 constexpr auto upper = SymmetricPattern::Triangle::upper;
-constexpr bool fills = true, as_is = false;
 
 // For a problem without constraints or free vertices: not all libraries accept empty matrices.
 class NoEquations : public SpdSolver {
@@ -37,18 +35,17 @@ class NoEquations : public SpdSolver {
 // CHOLMOD's supernodal code transposes an upper triangle at every factorization; the up-looking
 // codes a lower one.
 constexpr SpdSolverRow table[] = {
-    {"tridiagonal", "L D L^T from both ends", upper, Takes::tridiagonal, as_is, Precision::full,
-     make_tridiagonal},
-    {"block_tridiagonal", "the same of 3 x 3 blocks", upper, Takes::block_tridiagonal, as_is,
-     Precision::full, make_block_tridiagonal},
-    {"multifrontal", "multifrontal Cholesky, laid out once", lower, Takes::any, fills,
-     Precision::full, make<MultifrontalCholesky<double>>},
+    {"tridiagonal", "L D L^T from both ends", upper, Takes::tridiagonal, make_tridiagonal},
+    {"block_tridiagonal", "the same of 3 x 3 blocks", upper, Takes::block_tridiagonal,
+     make_block_tridiagonal},
+    {"multifrontal", "multifrontal Cholesky, laid out once", lower, Takes::any,
+     make<MultifrontalCholesky<double>>},
     {"multifrontal_mixed", "the same in single precision where that is enough", lower, Takes::any,
-     fills, Precision::mixed, make<MixedCholesky>},
-    {"cholmod_simplicial", "CHOLMOD's simplicial Cholesky", upper, Takes::any, fills,
-     Precision::full, make_cholmod_simplicial},
-    {"cholmod_supernodal", "CHOLMOD's supernodal Cholesky", lower, Takes::any, fills,
-     Precision::full, make_cholmod_supernodal},
+     make<MixedCholesky>, Precision::mixed},
+    {"cholmod_simplicial", "CHOLMOD's simplicial Cholesky", upper, Takes::any,
+     make_cholmod_simplicial},
+    {"cholmod_supernodal", "CHOLMOD's supernodal Cholesky", lower, Takes::any,
+     make_cholmod_supernodal},
 };
 
 }  // namespace
@@ -64,11 +61,10 @@ void SpdSolver::solve_coordinates(Eigen::Matrix4Xd& rhs) {
 std::span<const SpdSolverRow> spd_solvers() { return table; }
 
 const SpdSolverRow& spd_solver(std::string_view name) {
-  const auto place = std::find_if(std::begin(table), std::end(table),
-                                  [name](const SpdSolverRow& row) { return row.name == name; });
-  if (place == std::end(table))
-    throw std::invalid_argument("no linear solver '" + std::string(name) + "'");
-  return *place;
+  for (const SpdSolverRow& row : table) {
+    if (row.name == name) return row;
+  }
+  throw std::invalid_argument("no linear solver '" + std::string(name) + "'");
 }
 
 std::unique_ptr<SpdSolver> make_spd_solver(std::string_view name, SymmetricPattern pattern) {

@@ -15,7 +15,7 @@
 #include <cmath>
 #include <limits>
 
-#include "solvers/linear/lu.h"
+#include "solvers/linear/spd_solver.h"
 #include "solvers/methods/rows.h"
 #include "solvers/problem/forces.h"
 #include "solvers/problem/stopwatch.h"
@@ -137,7 +137,7 @@ class Shake final : public VelocityFilter {
     if (!current_) {
       current_ = std::make_unique<SchurComplement>(system_.edges(), problem_.vertices(),
                                                    SymmetricPattern::Triangle::both);
-      current_solver_ = make_unsymmetric_solver(current_->pattern());
+      current_solver_ = make_lu_solver(current_->pattern());
     }
     current_->assemble(u_, u_start_, current_solver_->values());
     if (contacts) current_->subtract_contacts(*contacts, u_, u_start_, current_solver_->values());
@@ -179,7 +179,7 @@ class Shake final : public VelocityFilter {
   Iterate::Record best_;    // of least |C|
   // J(x_j) W J(x^n)^T, made at the first failure to converge: most runs never need it.
   std::unique_ptr<SchurComplement> current_;
-  std::unique_ptr<UnsymmetricSolver> current_solver_;
+  std::unique_ptr<DirectSolver> current_solver_;
 };
 
 // RATTLE (Andersen 1983): SHAKE's kin with velocities at the ends of steps. Second order,

@@ -22,7 +22,7 @@ ConstraintSystem::ConstraintSystem(const Problem& problem, double strain_limit,
   schur_ = std::make_unique<SchurComplement>(*edges_, problem.vertices(), natural);
   solver_name_ = choose(linear_solver, schur_->pattern(), digits);
   const SpdSolverRow& row = spd_solver(solver_name_);
-  if (row.fills) {
+  if (row.takes == Takes::any) {
     edges_ = std::make_unique<EdgeConstraints>(problem, strain_limit,
                                                fill_reducing_order(schur_->pattern()));
     schur_ = std::make_unique<SchurComplement>(*edges_, problem.vertices(), row.triangle);

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solvers/linear/lu.h"
+#include "solvers/linear/spd_solver.h"
 
 namespace inextensible {
 namespace {
@@ -173,7 +173,7 @@ class KktSystem final : public KktSolver {
         for (int e = both.column_start[j]; e < both.column_start[j + 1]; ++e)
           full_from_upper_.push_back(pattern_.place(both.row_index[e], j));
       }
-      lu_ = make_unsymmetric_solver(std::move(both));
+      lu_ = make_lu_solver(std::move(both));
     }
     using_umfpack_ = true;
     for (std::size_t i = 0; i < full_from_upper_.size(); ++i) {
@@ -247,7 +247,7 @@ class KktSystem final : public KktSolver {
   std::vector<int> diagonal_;   // the place of each unknown's diagonal entry
   std::vector<EdgePlaces> edge_places_;
   std::unique_ptr<QuasiDefiniteSolver> ldlt_;
-  std::unique_ptr<UnsymmetricSolver> lu_;
+  std::unique_ptr<DirectSolver> lu_;
   std::vector<int> full_from_upper_;
   Eigen::VectorXd rhs_, solution_, residual_;
 };

@@ -33,7 +33,7 @@ VertexMatrix::VertexMatrix(const Problem& problem, const Pairs& coupled, std::st
                   : block == 1     ? "tridiagonal"
                                    : "block_tridiagonal";
   const SpdSolverRow& row = spd_solver(linear_solver);
-  if (row.fills) {
+  if (row.takes == Takes::any) {
     const std::vector<int> order =
         fill_reducing_order(pattern_of(n, pairs, SymmetricPattern::Triangle::upper));
     std::vector<int> ordered(free.size());

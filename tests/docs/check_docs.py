@@ -22,7 +22,7 @@ and that line of that file must then contain the text. Generated blocks end with
 build/release; with --fix `./bench`, which builds it first.
 
 Links between documents and paths in backticks must exist, Markdown files that comments name too. docs/using.md must name every exit
-code. Pictures of results and docs/results.md must be of the commits that the results in the tree are of.
+code. Pictures of results must be of the commits that the results in the tree are of.
 """
 
 import functools
@@ -288,7 +288,7 @@ def exit_codes() -> list[str]:
 
 
 def pictures() -> list[str]:
-    """Pictures, and the rows of docs/results.md, are of the commits that their results are of."""
+    """Pictures are of the commits that their results are of."""
     files = [*(ROOT / "results").glob("*.json"), *(ROOT / "results/large").glob("*.json")]
     commits = {file: json_of(file)["context"]["build"]["git"] for file in files}
     errors = []
@@ -300,9 +300,7 @@ def pictures() -> list[str]:
             errors.append(f"plots/figures/{picture.name} is of no result in results/")
         elif not drawn or not any(commit.startswith(drawn[1]) for commit in of):
             errors.append(f"plots/figures/{picture.name} is not of the commit that its result is of: results/measure --pages")
-    rows = re.findall(r"^\| `(results/[^`]*\.json)` \|.*?\| ([0-9a-f]{40}) \|", read(ROOT / "docs/results.md"), re.MULTILINE)
-    return errors + [f"docs/results.md is not of {name} as it is: results/measure --pages" for name, commit in rows
-                     if commits.get(ROOT / name) != commit]
+    return errors
 
 
 def main() -> int:

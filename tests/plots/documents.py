@@ -1,4 +1,4 @@
-"""Small result files as bench writes them, drawn as bench draws them: it checks and analyses each. And what the tests ask of a figure."""
+"""Small result files as bench writes them, checked and analysed by bench, and what the tests ask of a drawn figure."""
 
 import copy
 import json

@@ -69,7 +69,7 @@ def opened(browser: Any, folder: Path, documents: list[Json]) -> None:
 
 @pytest.fixture
 def page(browser: Any, tmp_path: Path) -> Any:
-    """Of one sweep. Whatever a test does there, the browser has nothing to complain of."""
+    """The page of one sweep. No test may cause complaints in the browser's log."""
     opened(browser, tmp_path, [strain_sweep()])
     yield browser
     assert complaints(browser) == []

@@ -58,8 +58,7 @@ inline json document(const std::vector<json>& points, double noise = 0) {
 
 inline ClaimVerdict verdict_in(const std::string& id, const json& result) {
   const auto claims = judge_claims({result});
-  const auto found =
-      std::find_if(claims.begin(), claims.end(), [&](const auto& c) { return c.id == id; });
+  const auto found = std::ranges::find(claims, id, &ClaimVerdict::id);
   EXPECT_NE(found, claims.end());
   EXPECT_FALSE(found->verdict == "not yet measured" && !found->points.empty());
   return *found;

@@ -45,10 +45,10 @@ TEST(Films, EndRunsWhoseStepsTakeTooMuchWork) {
 TEST(Pictures, ShowFlatCloth) {
   constexpr int width = 96;
   Recording recording;
-  recording.stage.scene = testing::build("drape", {{"n", 12}});
+  recording.scene = testing::build("drape", {{"n", 12}});
   FilmRun take;
   take.strain_limit = 0.01;
-  take.frames = {recording.stage.scene.start.x};
+  take.frames = {recording.scene.start.x};
   recording.takes = {take};
   const View view = view_of(recording, {0});
   const Pixels pixels = trace(shot_of(recording, view, 0, 0, width), view, width, 2);

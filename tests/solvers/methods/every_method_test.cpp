@@ -14,7 +14,7 @@
 #include "solvers/systems/constraint_system.h"
 #include "support/motion.h"
 #include "support/param_name.h"
-#include "support/random_graph.h"
+#include "support/random_mesh.h"
 #include "support/scenes.h"
 
 namespace {

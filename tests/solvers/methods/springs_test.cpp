@@ -9,7 +9,7 @@
 #include "solvers/methods/vertex_passes.h"
 #include "solvers/registry.h"
 #include "support/motion.h"
-#include "support/random_graph.h"
+#include "support/random_mesh.h"
 
 namespace inextensible {
 namespace {

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "solvers/linear/lu.h"
+#include "solvers/linear/spd_solver.h"
 #include "solvers/systems/schur_complement.h"
 #include "support/contact.h"
-#include "support/random_graph.h"
+#include "support/random_mesh.h"
 
 namespace inextensible {
 namespace {
@@ -157,7 +157,7 @@ TEST(SchurComplement, EqualsTheDenseProductInEachTriangleWithAndWithoutContacts)
 }
 
 // SHAKE's matrix, directions at two positions; a tree that is a path has a tridiagonal one.
-TEST(UnsymmetricSolver, IsBackwardStableOnShakesMatricesAndSeesAnEmptyColumn) {
+TEST(LuSolver, IsBackwardStableOnShakesMatricesAndSeesAnEmptyColumn) {
   for (const bool chain : {true, false}) {
     testing::for_seeds(seeds, [&](testing::Random& random, std::uint64_t seed) {
       SCOPED_TRACE((chain ? "chain, seed " : "graph, seed ") + std::to_string(seed));
@@ -170,7 +170,7 @@ TEST(UnsymmetricSolver, IsBackwardStableOnShakesMatricesAndSeesAnEmptyColumn) {
       edges.gradient(graph.x, ux);
       edges.gradient(y, uy);
       const SchurComplement schur(edges, problem.vertices(), Triangle::both);
-      const auto solver = make_unsymmetric_solver(schur.pattern());
+      const auto solver = make_lu_solver(schur.pattern());
       schur.assemble(uy, ux, solver->values());
       const MatrixXd matrix = testing::dense_gradient(problem, y) *
                               testing::inverse_masses3(problem).asDiagonal() *
@@ -188,11 +188,11 @@ TEST(UnsymmetricSolver, IsBackwardStableOnShakesMatricesAndSeesAnEmptyColumn) {
 }
 
 // [1 1 0; 1 2 1; 0 1 1], whose middle row is the sum of the others, and all ones.
-TEST(UnsymmetricSolver, SeesDependentRowsWithoutAnyZeroColumn) {
+TEST(LuSolver, SeesDependentRowsWithoutAnyZeroColumn) {
   for (const bool tridiagonal : {true, false}) {
     const Pairs chain{{0, 1}, {1, 2}}, full{{0, 1}, {0, 2}, {1, 2}};
     const SymmetricPattern pattern = pattern_of(3, tridiagonal ? chain : full, Triangle::both);
-    const auto solver = make_unsymmetric_solver(pattern);
+    const auto solver = make_lu_solver(pattern);
     std::fill_n(solver->values(), pattern.entries(), 1);
     if (tridiagonal) solver->values()[pattern.place(1, 1)] = 2;
     EXPECT_FALSE(solver->factor()) << tridiagonal;

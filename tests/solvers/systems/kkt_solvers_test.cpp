@@ -6,7 +6,7 @@
 
 #include "solvers/systems/kkt_system.h"
 #include "solvers/systems/schur_complement.h"
-#include "support/random_graph.h"
+#include "support/random_mesh.h"
 
 namespace inextensible {
 namespace {
