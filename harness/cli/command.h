@@ -75,7 +75,8 @@ inline std::vector<Verb> verbs() {
 
 // standard: what is taken if the option is not given, here and below.
 struct SceneOptions {
-  std::string scene, n;    // n: numbers between commas
+  std::string scene;
+  Numbers n;
   Words set;               // NAME=NUMBER
   std::string pins, body;  // of a mesh
 
@@ -86,9 +87,9 @@ struct SceneOptions {
 };
 
 // What selects the runs of a sweep.
-struct SelectionOptions : SceneOptions {  // n: instead of the suite's
+struct SelectionOptions : SceneOptions {
   std::string sweep, solver, filter, exclude, config, profile = "default";
-  std::string limits;  // numbers between commas, instead of the suite's
+  Numbers limits;  // like n, instead of the suite's
 
   // of_suites: of those that hard cases do not have.
   void declare_scenes(const Command& to, const Command& of_suites);
@@ -108,7 +109,7 @@ struct SweepOptions : SelectionOptions {
 
 void add_results(const Command& to, Words& files, const std::string& help);
 void add_solver(const Command& to, std::string& solver);
-void add_limits(const Command& to, std::string& limits, const std::string& standard);
+void add_limits(const Command& to, Numbers& limits, const std::string& standard);
 void add_filters(const Command& to, std::string& filter, std::string& exclude);
 void add_profile(const Command& to, std::string& profile);
 void add_config(const Command& to, std::string& config);
@@ -121,10 +122,6 @@ std::vector<std::string> profiles();
 // contestant.
 std::optional<Pattern> solver_pattern(const std::string& text, const Contestants& contestants = {});
 std::optional<Pattern> pattern_of(const std::string& option, const std::string& text);
-// Numbers of a list between commas, "20,40,80".
-std::vector<double> numbers_of(const std::string& option, const std::string& text,
-                               const Bounds& bounds);
-double one_number_of(const std::string& option, const std::string& text, const Bounds& bounds);
 
 std::string suite_path(const SelectionOptions& options);
 Suite load_suite(const SweepOptions& options);

@@ -162,15 +162,15 @@ Trials measure(const Suite& suite, const Wish& wish, const ChooseLimits& limits,
 }
 
 struct Choose : SceneOptions {
-  std::string solver, limits = "0.01";
-  double budget = 0;  // ms; 0: none
+  std::string solver;
+  double limit = 0.01, budget = 0;  // budget: ms; 0: none
   double frames_per_second = 60, error = headline_error, seconds = 60;
   bool no_wait = false;
 
   void declare(const Command& command) {
     scene = "drape";
     SceneOptions::declare(command, scene);
-    add_limits(command, limits, limits);
+    command.option("--limit", limit, "strain limit; default: 0.01", "STRAIN", Bounds::strain());
     command.option("--error", error,
                    "permitted distance from the reference, over the scene's size; default: 0.02",
                    "E", Bounds::positive());
@@ -196,7 +196,7 @@ struct Choose : SceneOptions {
     sweep.sweep = "strain";
     sweep.refine = false;  // the time is better spent on other contestants
     sweep.scene = name();
-    sweep.limits = {one_number_of("--limit", limits, Bounds::strain())};
+    sweep.limits = {limit};
     sweep.scene_parameters = complete_parameters();
     sweep.resolutions = {static_cast<int>(sweep.scene_parameters.at(type->resolution))};
     sweep.coarsest = 1 / frames_per_second;

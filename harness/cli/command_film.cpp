@@ -52,7 +52,8 @@ void print_times(const Recording& recording) {
 }
 
 struct Film : SceneOptions {
-  std::string solver = "fast_projection", limits = "0.01", out, stills;
+  std::string solver = "fast_projection", out;
+  Numbers limits{0.01}, stills;
   double step = FilmSpec{}.step;  // s
   double frames_per_second = 30;
   int width = 0;  // pixels; 0: not given
@@ -61,12 +62,13 @@ struct Film : SceneOptions {
     scene = "drape";
     SceneOptions::declare(command, scene);
     add_solver(command, solver);
-    add_limits(command, limits, limits);
+    add_limits(command, limits, "0.01");
     command.option("--step", step, "s; shortened to a whole part of a frame; default: 0.01", "S",
                    Bounds::positive());
     command.option("--fps", frames_per_second, "frames a second", "N", Bounds::positive());
     command.option("--stills", stills,
-                   "times of the pictures in a .png, s, between commas; default: four", "TIMES");
+                   "times of the pictures in a .png, s, between commas; default: four", "TIME",
+                   Bounds::at_least(0));
     command.option("--width", width, "of each picture; default: 480", "PIXELS",
                    {.least = 16, .most = 4096, .whole = true});
     command.option("--out", out,
@@ -84,7 +86,7 @@ struct Film : SceneOptions {
       if (wanted->matches(backend.name)) film.solvers.push_back({backend.name, backend.name});
     }
     tune(film.solvers, read_tuned_up_to_date("tuned.json"), find_scene(film.scene)->kind());
-    film.strain_limits = numbers_of("--limit", limits, Bounds::strain());
+    film.strain_limits = limits;
     film.step = step;
     film.frames_per_second = frames_per_second;
     return film;
@@ -99,7 +101,7 @@ struct Film : SceneOptions {
     if (stills.empty()) return {0, last / 3, 2 * last / 3, last};
     frames.clear();
     const double end = static_cast<double>(last) / film.frames_per_second;
-    for (const double time : numbers_of("--stills", stills, Bounds::at_least(0))) {
+    for (const double time : stills) {
       if (time > end + 0.5 / film.frames_per_second)
         throw UsageError("--stills: " + number_text(time) + " s is not within the film, 0 to " +
                          number_text(end) + " s (--set duration=SECONDS changes that)");

@@ -20,6 +20,7 @@ class Option;
 namespace harness {
 
 using Words = std::vector<std::string>;
+using Numbers = std::vector<double>;
 
 std::optional<double> number_in(const std::string& text);  // none: it is not a number alone
 
@@ -44,11 +45,11 @@ class Command {
       : app_(app), group_(std::move(group)) {}
 
   using Place = std::variant<std::reference_wrapper<std::string>, std::reference_wrapper<Words>,
-                             std::reference_wrapper<double>, std::reference_wrapper<int>,
-                             std::reference_wrapper<std::int64_t>>;
+                             std::reference_wrapper<Numbers>, std::reference_wrapper<double>,
+                             std::reference_wrapper<int>, std::reference_wrapper<std::int64_t>>;
 
   // An option if the name begins with dashes, a word in its place if not. `type`: what the help
-  // calls the value.
+  // calls the value. Numbers stand between commas, and the bounds hold for each.
   void option(const std::string& name, Place place, const std::string& help,
               const std::string& type, const Bounds& bounds = {}) const;
   // One value each time; Words as an option take all words that follow.

@@ -45,8 +45,8 @@ struct ReferenceVerb : SelectionOptions {
     if (n.empty()) return {{name(), complete_parameters()}};
     std::vector<SceneOfReference> scenes;
     SceneOptions one = *this;
-    for (const double size : numbers_of("--n", n, Bounds::whole_number(1))) {
-      one.n = number_text(size, 10);
+    for (const double size : n) {
+      one.n = {size};
       scenes.emplace_back(name(), one.complete_parameters());
     }
     return scenes;

@@ -83,20 +83,21 @@ struct Show {
 
 struct Budget {
   Words files;
-  std::string ms = "1,4,16";
+  Numbers ms{1, 4, 16};
 
   void declare(const Command& command) {
     add_results(command, files, "result files");
-    command.option("--ms", ms, "milliseconds of one core for a frame of 1/60 s; default: " + ms,
-                   "MS,...");
+    command.option(
+        "--ms", ms,
+        "milliseconds of one core for a frame of 1/60 s, one or several; default: 1,4,16", "MS",
+        Bounds::positive());
   }
 
   int run() {
-    std::vector<double> seconds = numbers_of("--ms", ms, Bounds::positive());
-    for (double& budget : seconds) budget *= 1e-3;
+    for (double& budget : ms) budget *= 1e-3;  // s
     const auto sweeps = documents_of(read_all(files, ResultKinds::all), is_sweep);
     std::vector<analysis::BudgetTable> tables;
-    if (!sweeps.empty()) tables = analysis::budget_tables(joined(sweeps), seconds);
+    if (!sweeps.empty()) tables = analysis::budget_tables(joined(sweeps), ms);
     if (tables.empty())
       throw UsageError("'" + files.front() +
                        "' has no times of frames; sweeps of at least one second have them");

@@ -60,7 +60,8 @@ void print(const TunedEntry& entry) {
 }
 
 struct Tune {
-  std::string solver, scene, n, limits, out;
+  std::string solver, scene, out;
+  Numbers n, limits;
   int trials = 0;  // 0: the rule's
   double timeout = TuneOptions{}.timeout;
   bool no_wait = false, again = false;
@@ -69,9 +70,10 @@ struct Tune {
     add_solver(command, solver);
     command.option("--scene", scene,
                    "chain, drape, settling_drape, patch or spinning_net; default: all", "SCENE");
-    command.option("--n", n, "sizes of your own, whose settings are added", "N,...");
+    command.option("--n", n, "sizes of your own, whose settings are added", "N",
+                   Bounds::whole_number(2));
     command.option("--limit", limits, "strain limits of your own, whose settings are added",
-                   "STRAIN,...");
+                   "STRAIN", Bounds::strain());
     command.option("--trials", trials,
                    "sets of settings to try for each solver, size and limit; default: 10 for each "
                    "setting, at most 40",
@@ -98,11 +100,8 @@ struct Tune {
       throw UsageError("--n and --limit go with --scene: of which scene is the place?");
     SweepSpec& one = chosen.front();
     one.scene_parameters.clear();  // the scene that results report
-    if (!n.empty()) {
-      const std::vector<double> sizes = numbers_of("--n", n, Bounds::whole_number(2));
-      one.resolutions.assign(sizes.begin(), sizes.end());
-    }
-    if (!limits.empty()) one.limits = numbers_of("--limit", limits, Bounds::strain());
+    if (!n.empty()) one.resolutions.assign(n.begin(), n.end());
+    if (!limits.empty()) one.limits = limits;
     return chosen;
   }
 

@@ -56,10 +56,13 @@ void Command::option(const std::string& name, Place place, const std::string& he
                      const std::string& type, const Bounds& bounds) const {
   std::visit(
       [&](auto value) {
+        using Value = typename decltype(value)::type;
         CLI::Option* option =
             placed(app_->add_option(name == "--out" ? "-o,--out" : name, value.get(), help));
         option->type_name(type);
-        if constexpr (std::is_arithmetic_v<typename decltype(value)::type>)
+        if constexpr (std::is_same_v<Value, Numbers>)
+          option->delimiter(',')->allow_extra_args(false);
+        if constexpr (std::is_arithmetic_v<Value> || std::is_same_v<Value, Numbers>)
           option->check(within(bounds));
       },
       place);

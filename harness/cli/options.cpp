@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <limits>
-#include <sstream>
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
@@ -19,8 +18,8 @@ using nlohmann::json;
 void SceneOptions::declare(const Command& to, const std::string& standard) {
   to.option("--scene", scene, "one of `bench list scenes`, or mesh:FILE.obj; default: " + standard,
             "SCENE");
-  to.option("--n", n, "size of the scene; a resolution sweep takes several, e.g. 20,40,80",
-            "N,...");
+  to.option("--n", n, "size of the scene; a resolution sweep takes several, e.g. 20,40,80", "N",
+            Bounds::whole_number(2));
   to.repeatable("--set", set, "a parameter of the scene; repeatable", "NAME=NUMBER");
   to.option("--pins", pins,
             "of mesh:FILE.obj: which vertices are pinned, e.g. 'y > 1.2' or 'y > 1.2 and x < 0'",
@@ -46,7 +45,8 @@ SceneParameters SceneOptions::given_parameters() const {
 SceneParameters SceneOptions::complete_parameters() const {
   const auto type = checked_scene(name());
   SceneParameters parameters = given_parameters();
-  if (!n.empty()) parameters[type->resolution] = one_number_of("--n", n, Bounds::whole_number(2));
+  if (n.size() > 1) throw UsageError("--n: one scene has one size");
+  if (!n.empty()) parameters[type->resolution] = n.front();
   return harness::complete_parameters(*type, parameters);
 }
 
@@ -97,9 +97,10 @@ void add_solver(const Command& to, std::string& solver) {
       "repeatable");
 }
 
-void add_limits(const Command& to, std::string& limits, const std::string& standard) {
+void add_limits(const Command& to, Numbers& limits, const std::string& standard) {
   to.option("--limit", limits,
-            "strain limit, one or several, e.g. 0.01,0.001; default: " + standard, "STRAIN,...");
+            "strain limit, one or several, e.g. 0.01,0.001; default: " + standard, "STRAIN",
+            Bounds::strain());
 }
 
 void add_filters(const Command& to, std::string& filter, std::string& exclude) {
@@ -151,28 +152,7 @@ std::optional<Pattern> pattern_of(const std::string& option, const std::string& 
   return text.empty() ? std::nullopt : std::optional(Pattern(option, text));
 }
 
-std::vector<double> numbers_of(const std::string& option, const std::string& text,
-                               const Bounds& bounds) {
-  std::vector<double> numbers;
-  std::istringstream list(text + ',');  // so that nothing behind the last comma is an item as well
-  for (std::string item; std::getline(list, item, ',');) {
-    const auto number = number_in(item);
-    if (!number || !bounds.hold(*number))
-      throw UsageError(option + " is '" + shortened(text) + "': '" + shortened(item, 20) +
-                       "' must be " + bounds.text());
-    numbers.push_back(*number);
-  }
-  return numbers;
-}
-
-double one_number_of(const std::string& option, const std::string& text, const Bounds& bounds) {
-  const std::vector<double> numbers = numbers_of(option, text, bounds);
-  if (numbers.size() != 1) throw UsageError(option + " is '" + text + "', must be one number");
-  return numbers.front();
-}
-
-// ---- The suite that a sweep runs: a profile's or one's own, with what the options say instead
-// ----
+// ---- The suite that a sweep runs: a profile's or one's own, as the options change it ----
 
 namespace {
 
@@ -237,20 +217,18 @@ Suite edited_suite(const std::string& path, const SweepOptions& options) {
       for (const auto& [name, value] : given) sweep["scene_parameters"][name] = value;
     }
     if (!options.limits.empty()) {
-      const json limits = numbers_of("--limit", options.limits, Bounds::strain());
-      if (options.sweep == "resolution" && limits.size() > 1)
+      if (options.sweep == "resolution" && options.limits.size() > 1)
         throw UsageError("--limit: a resolution sweep has one");
       sweep.erase("limit");
-      sweep["limits"] = limits;
+      sweep["limits"] = options.limits;
     }
     if (options.n.empty()) continue;
-    const json sizes = numbers_of("--n", options.n, Bounds::whole_number(2));
-    if (options.sweep != "resolution" && sizes.size() > 1)
+    if (options.sweep != "resolution" && options.n.size() > 1)
       throw UsageError("--n: a " + options.sweep + " sweep has one size");
     const auto type = find_scene(sweep.value("scene", ""));
     if (type && sweep.contains("scene_parameters"))
       sweep["scene_parameters"].erase(type->resolution);
-    sweep["resolutions"] = sizes;
+    sweep["resolutions"] = options.n;
   }
   return parse_suite(document.dump(), path);
 }

@@ -26,7 +26,7 @@ no case matches <- --sweep stability --case nothing --out out.json
 --reps <- SWEEP --reps 0
 must be i/N <- SWEEP --shard 2
 i must be from 1 to N <- SWEEP --shard 3/2
-'' must be a number above 0 and below 1 <- SWEEP --limit 0.01,
+is '1', must be a number above 0 and below 1 <- SWEEP --limit 0.01,1
 --memory <- SWEEP --memory much
 is 'nan', must be a number above 0 <- SWEEP --timeout nan
 has one size <- SWEEP --n 10,20

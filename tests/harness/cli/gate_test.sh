@@ -116,7 +116,7 @@ while IFS='|' read -r words replacement; do
   [[ ${PIPESTATUS[1]} == 2 && ! -s stdout.txt && $(wc -l <stderr.txt) == 1 ]] && grep -qF "line 2: $words" stderr.txt ||
     fail "point, $replacement: $(cat stdout.txt stderr.txt)"
 done <<'TABLE'
-no solver 'jacob'; did you mean 'jacobi'?|"solver": "jacobi"/"solver": "jacob"
+'solver': no solver 'jacob'; did you mean 'jacobi'?|"solver": "jacobi"/"solver": "jacob"
 no scene 'chian'; did you mean 'chain'?|"scene": "chain"/"scene": "chian"
 'step' is 0|"step": 0.005/"step": 0
 'strain_limit' is -1|"strain_limit": 0.01/"strain_limit": -1
