@@ -156,15 +156,6 @@ std::optional<Pattern> pattern_of(const std::string& option, const std::string& 
 
 namespace {
 
-void check_longest_step(const Suite& suite) {
-  for (const SweepSpec& sweep : suite.sweeps) {
-    if (sweep.coarsest > longest_step * (1 + 1e-9))
-      throw UsageError("the ladder of " + sweep.scene + " begins at " +
-                       number_text(sweep.coarsest) +
-                       " s ('steps': 'coarsest'), must be a frame, 1/24 s, at most");
-  }
-}
-
 // For all sweeps a ladder that ends earlier or later.
 void cut_ladders(Suite& suite, double finest) {
   for (SweepSpec& sweep : suite.sweeps) {
@@ -258,7 +249,6 @@ Suite load_suite(const SweepOptions& given) {
     throw UsageError("'" + path + "' has no such sweep: --sweep " + options.sweep + " --scene " +
                      options.scene);
   check_known("choice of steps", options.steps, {"search", "adaptive", "all"});
-  check_longest_step(suite);
   if (options.steps == "adaptive") {
     if (options.sweep == "step")
       throw UsageError("--steps adaptive does not go with --sweep step, whose steps are fixed");
