@@ -86,24 +86,18 @@ struct SceneOptions {
   SceneParameters complete_parameters() const;  // where one scene of one size is chosen
 };
 
-// What selects the runs of a sweep.
-struct SelectionOptions : SceneOptions {
-  std::string sweep, solver, filter, exclude, config, profile = "default";
+// A sweep: what selects its runs, and how they are run.
+struct SweepOptions : SceneOptions {
+  std::string sweep, solver, filter, exclude, config, profile = "default", steps = "search";
   Numbers limits;  // like n, instead of the suite's
-
-  // of_suites: of those that hard cases do not have.
-  void declare_scenes(const Command& to, const Command& of_suites);
-  void declare(const Command& to, const Command& of_suites);
-};
-
-// How it is run, too.
-struct SweepOptions : SelectionOptions {
-  std::string steps = "search";
   int reps = 0;
   double timeout = 0, finest_error = 0, finest = 0;
   std::int64_t seed = -1;
   bool untimed = false;  // times are not used: does not wait for others that take times
 
+  // Each adds to the one before. of_suites: options that hard cases do not have.
+  void declare_scenes(const Command& to, const Command& of_suites);
+  void declare_selection(const Command& to, const Command& of_suites);
   void declare(const Command& to, const Command& of_suites);
 };
 
@@ -111,10 +105,9 @@ void add_results(const Command& to, Words& files, const std::string& help);
 void add_solver(const Command& to, std::string& solver);
 void add_limits(const Command& to, Numbers& limits, const std::string& standard);
 void add_filters(const Command& to, std::string& filter, std::string& exclude);
-void add_profile(const Command& to, std::string& profile);
-void add_config(const Command& to, std::string& config);
+void add_suite(const Command& to, const Command& of_suites, std::string& profile,
+               std::string& config);
 void add_timeout(const Command& to, double& timeout, const std::string& standard);
-void add_seed(const Command& to, std::int64_t& seed, const std::string& help);
 void add_no_wait(const Command& to, bool& no_wait);
 
 std::vector<std::string> profiles();
@@ -123,9 +116,9 @@ std::vector<std::string> profiles();
 std::optional<Pattern> solver_pattern(const std::string& text, const Contestants& contestants = {});
 std::optional<Pattern> pattern_of(const std::string& option, const std::string& text);
 
-std::string suite_path(const SelectionOptions& options);
+std::string suite_path(const SweepOptions& options);
 Suite load_suite(const SweepOptions& options);
-SweepFilters filters_of(const SelectionOptions& options);
+SweepFilters filters_of(const SweepOptions& options);
 // Scenes of the plan without a reference, by its file's name: their points carry no trajectory
 // error.
 using SceneOfReference = std::pair<std::string, SceneParameters>;

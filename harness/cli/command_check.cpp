@@ -33,7 +33,8 @@ struct Check {
     add_solver(command, solver);
     command.require({"--solver"});
     command.flag("--quick", quick, "without the hard cases, which may take minutes");
-    add_seed(command, seed, "of methods that draw random numbers");
+    command.option("--seed", seed, "of methods that draw random numbers", "N",
+                   Bounds::exact_number());
   }
 
   bool conforms_to_all(const std::string& name) const {

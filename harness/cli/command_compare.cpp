@@ -183,8 +183,7 @@ struct Ab : CompareOptions {
                        "a plug-in of the program before; repeatable", "FILE");
     command.repeatable("--new-plugin", after.plugins, "a plug-in of the program after; repeatable",
                        "FILE");
-    add_profile(command, profile);
-    add_config(command, config);
+    add_suite(command, command, profile, config);
     const Bounds number_of_pairs{.least = 4, .most = 1000, .whole = true};  // fewer prove nothing
     command.option("--pairs", pairs, "processes of each build for a point; default: 15", "N",
                    number_of_pairs);

@@ -159,7 +159,7 @@ struct ListVerb : SweepOptions {
                        " (with --sweep); default: the first three. result.schema and the like: "
                        "that file of configs/, generated from the tables in the code",
                    "WHAT");
-    SelectionOptions::declare(command, command);
+    declare_selection(command, command);
     command.flag("--json", as_json, "as JSON");
   }
 

@@ -28,9 +28,8 @@ void make_reference(const std::string& scene, const SceneParameters& parameters,
   std::cout << scene << ": " << reference_text(reference) << '\n' << path.string() << std::endl;
 }
 
-struct ReferenceVerb : SelectionOptions {
+struct ReferenceVerb : SweepOptions {
   bool again = false;
-  double finest = 0;
 
   void declare(const Command& command) {
     declare_scenes(command, command);

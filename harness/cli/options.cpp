@@ -50,14 +50,13 @@ SceneParameters SceneOptions::complete_parameters() const {
   return harness::complete_parameters(*type, parameters);
 }
 
-void SelectionOptions::declare_scenes(const Command& to, const Command& of_suites) {
+void SweepOptions::declare_scenes(const Command& to, const Command& of_suites) {
   to.option("--sweep", sweep, "axis: strain (limit), resolution, step or stability", "AXIS");
-  add_profile(to, profile);
+  add_suite(to, of_suites, profile, config);
   SceneOptions::declare(of_suites, "all of the suite's");
-  add_config(of_suites, config);
 }
 
-void SelectionOptions::declare(const Command& to, const Command& of_suites) {
+void SweepOptions::declare_selection(const Command& to, const Command& of_suites) {
   declare_scenes(to, of_suites);
   add_solver(to, solver);
   add_limits(of_suites, limits, "the suite's");
@@ -65,8 +64,8 @@ void SelectionOptions::declare(const Command& to, const Command& of_suites) {
 }
 
 void SweepOptions::declare(const Command& to, const Command& of_suites) {
-  SelectionOptions::declare(to, of_suites);
-  add_seed(to, seed, "of random orders");
+  declare_selection(to, of_suites);
+  to.option("--seed", seed, "of random orders", "N", Bounds::exact_number());
   of_suites.option("--reps", reps, "samples of each point that may be best", "N",
                    Bounds::whole_number(1));
   add_timeout(of_suites, timeout, "the suite's");
@@ -108,21 +107,15 @@ void add_filters(const Command& to, std::string& filter, std::string& exclude) {
   to.option("--exclude", exclude, "without points whose id contains a match", "REGEX");
 }
 
-void add_profile(const Command& to, std::string& profile) {
+void add_suite(const Command& to, const Command& of_suites, std::string& profile,
+               std::string& config) {
   to.option("--profile", profile, "one of `bench list suites`; default: " + profile, "NAME");
-}
-
-void add_config(const Command& to, std::string& config) {
-  to.option("--config", config, "a suite of your own instead of a profile", "FILE");
+  of_suites.option("--config", config, "a suite of your own instead of a profile", "FILE");
 }
 
 void add_timeout(const Command& to, double& timeout, const std::string& standard) {
   to.option("--timeout", timeout, "seconds a run may take; default: " + standard, "S",
             Bounds::positive());
-}
-
-void add_seed(const Command& to, std::int64_t& seed, const std::string& help) {
-  to.option("--seed", seed, help, "N", Bounds::exact_number());
 }
 
 void add_no_wait(const Command& to, bool& no_wait) {
@@ -226,7 +219,7 @@ Suite edited_suite(const std::string& path, const SweepOptions& options) {
 
 }  // namespace
 
-std::string suite_path(const SelectionOptions& options) {
+std::string suite_path(const SweepOptions& options) {
   if (!options.scene.empty()) (void)checked_scene(options.scene);
   if (!options.config.empty()) return options.config;
   check_known("profile", options.profile, profiles());
@@ -275,7 +268,7 @@ Suite load_suite(const SweepOptions& given) {
   return suite;
 }
 
-SweepFilters filters_of(const SelectionOptions& options) {
+SweepFilters filters_of(const SweepOptions& options) {
   return {pattern_of("--solver", options.solver), pattern_of("--filter", options.filter),
           pattern_of("--exclude", options.exclude)};
 }
