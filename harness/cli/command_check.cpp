@@ -1,5 +1,4 @@
-// bench check: whether a solver keeps what every solver must. bench answers: what solvers make of
-// figures that theory knows.
+// bench check: tests what every solver must fulfil. bench answers: solvers against exact solutions.
 #include <algorithm>
 #include <iomanip>
 #include <sstream>

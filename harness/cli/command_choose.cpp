@@ -27,7 +27,7 @@ struct Choice {
   const SweepSpec& sweep;
   Wish wish;
   const Trials& trials;
-  double seconds;  // that it took
+  double seconds;  // elapsed
   Recommendation found = recommend(trials.points, wish);
 
   std::string text(const Pick& pick) const {
@@ -40,7 +40,7 @@ struct Choice {
            (std::isnan(pick.error) ? "unknown" : percent(pick.error));
   }
 
-  // Why there is no run to take.
+  // Why no run can be recommended.
   const char* nothing_found() const {
     if (trials.complete)
       return "no solver meets limit and error: a larger --error or --limit may be met\n";
@@ -92,12 +92,12 @@ struct Choice {
 
 // ---- Measuring ----
 
-constexpr double far_behind = 4;  // times the fastest so far: a run that takes longer is stopped
-constexpr int finest_part = 32;   // of a frame: the smallest step
-constexpr double reference_share = 0.4;  // of the time, for a reference at most
+constexpr double far_behind = 4;         // times the fastest run so far: slower runs are stopped
+constexpr int finest_part = 32;          // the smallest step is this part of a frame
+constexpr double reference_share = 0.4;  // at most, of --seconds
 
-// Contestants of the scene that --solver matches, and what it names that does not compete there.
-// Throws UsageError for a name that the scene has nothing for.
+// The scene's contestants that --solver matches, and solvers named in full that do not compete
+// there. Throws UsageError if there are none.
 Contestants contestants_for(const std::string& given, const SceneType& type,
                             const SceneParameters& parameters) {
   Contestants all = competitors(type, parameters);
@@ -114,7 +114,7 @@ Contestants contestants_for(const std::string& given, const SceneType& type,
   return all;
 }
 
-// A kept reference, or a quick one made now, which is then among `references`. Null: neither.
+// A stored reference, or else a quick one, which is added to `references`. Null: neither.
 std::shared_ptr<const Reference> reference_for(const SweepSpec& sweep, ReferenceFolder& references,
                                                const ChooseLimits& limits) {
   if (auto kept = references.find(sweep.scene, sweep.scene_parameters)) return kept;
@@ -179,7 +179,7 @@ struct Choose : SceneOptions {
     command.option("--budget", budget, "milliseconds of computing that a frame may take", "MS",
                    Bounds::positive());
     add_solver(command, solver);
-    command.option("--seconds", seconds, "that measuring may take; default: 60", "S",
+    command.option("--seconds", seconds, "time that measuring may take; default: 60", "S",
                    Bounds::positive());
     add_no_wait(command, no_wait);
   }

@@ -17,14 +17,14 @@ namespace harness {
 namespace {
 
 constexpr int default_width = 480;
-// Rays a pixel, each way: a still can take its time, a film has hundreds of pictures.
+// Rays a pixel in each direction: a film has hundreds of pictures, so it gets fewer than a still.
 constexpr int still_samples = 6, film_samples = 3;
 
 using analysis::percent;
 
 using Writer = std::vector<std::string> (*)(const Recording&, const FilmRun&, const std::string&,
                                             const std::string&);
-// Formats by their endings, and who writes files for other programs; null: pictures.
+// Formats by file ending, with the writer of files for other programs; null: pictures.
 const std::map<std::string, Writer> formats{{".webp", nullptr},  {".mp4", nullptr},
                                             {".png", nullptr},   {".obj", write_obj},
                                             {".pvd", write_vtk}, {".pc2", write_pc2}};
@@ -92,7 +92,7 @@ struct Film : SceneOptions {
     return film;
   }
 
-  // Which frames are drawn: all of a film; of stills those nearest to the times given, or four.
+  // The frames drawn: all for a film; for stills those nearest to the given times, or four.
   std::vector<std::size_t> shown_frames(const FilmSpec& film, bool still) const {
     const std::size_t last = frames_in(film) - 1;
     std::vector<std::size_t> frames(last + 1);
@@ -121,7 +121,7 @@ struct Film : SceneOptions {
     if (width > 0 && format->second) throw UsageError("--width: '" + out + "' has no pictures");
   }
 
-  // A scene of impossible measures, or a method that cannot run it, is the user's mistake.
+  // Impossible scene parameters, or a method that cannot run the scene, are the user's mistake.
   static Recording recorded(const FilmSpec& film) {
     Progress progress;
     try {
@@ -134,7 +134,7 @@ struct Film : SceneOptions {
     }
   }
 
-  // Pictures go to the script that puts them together in a folder of their own.
+  // The script assembles the pictures from a temporary folder.
   int draw_pictures(const Recording& recording, const std::vector<std::size_t>& frames,
                     bool still) const {
     const TemporaryFolder folder("film");
@@ -157,7 +157,7 @@ struct Film : SceneOptions {
     const std::string ending = place.extension().string();
     check_format(ending);
     const bool still = ending == ".png";
-    const auto frames = shown_frames(film, still);  // refused before anything runs
+    const auto frames = shown_frames(film, still);  // before anything runs
     check_writable(out);
     const Recording recording = recorded(film);
     print_times(recording);

@@ -1,4 +1,4 @@
-// bench list: what there is.
+// bench list: prints solvers, scenes, suites and other lists.
 #include <algorithm>
 #include <functional>
 #include <span>
@@ -32,7 +32,6 @@ List list(const char* name, const Items& items, const Row& row) {
   return {name, [=] { return rows_of(items(), row); }};
 }
 
-// With further keys.
 json row_of(const std::string& name, const std::string& meaning, json row = json::object()) {
   row["name"] = name;
   row["meaning"] = meaning;
@@ -116,7 +115,7 @@ const std::vector<List> lists{
         [](const auto& status) {
           return row_of(status.name, status.meaning, {{"letter", status.letter}});
         })};
-constexpr int usual = 3;  // of them, if no list is named
+constexpr int usual = 3;  // how many are printed if no list is named
 
 Words list_names() {
   Words names = names_of(lists);
@@ -173,7 +172,7 @@ struct ListVerb : SweepOptions {
     }
   }
 
-  // What is no list of rows.
+  // Points and schemas, which are not lists of rows.
   void print_other() const {
     if (as_json) throw UsageError("--json does not go with list " + what);
     if (what == "points") return print_points();

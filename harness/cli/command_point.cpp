@@ -1,4 +1,4 @@
-// bench point: runs single points in this process; what bench ab and other programs build upon.
+// bench point: runs single points in this process, for bench ab and other programs.
 #include <cmath>
 #include <tuple>
 
@@ -42,7 +42,7 @@ std::vector<PointSpec> read_specs(std::istream& in) {
     const std::string where = "point on line " + std::to_string(number);
     const json given = parse_line(line, where);
     try {
-      // A point that is typed by hand may leave these out.
+      // These may be omitted from a point that is typed by hand.
       json object{{"contestant", ""}, {"settings", json::object()}, {"adaptive", false}};
       object.update(given);
       check_spec(specs.emplace_back(spec_of(object)));
@@ -66,7 +66,7 @@ struct PointVerb {
   }
 
   PointResult timed(const PointSpec& spec, const RunLimits& limits) const {
-    const OutputToError no_output;  // a line of the solver's own would be read as a result
+    const OutputToError no_output;  // a line printed by the solver would be read as a result
     PointResult point = run_point(spec, limits);
     RunLimits of_more = limits;
     of_more.sample_of = &point;

@@ -149,7 +149,7 @@ std::optional<Pattern> pattern_of(const std::string& option, const std::string& 
 
 namespace {
 
-// For all sweeps a ladder that ends earlier or later.
+// Ends the step ladders of all sweeps at `finest`.
 void cut_ladders(Suite& suite, double finest) {
   for (SweepSpec& sweep : suite.sweeps) {
     if (sweep.adaptive)
@@ -165,8 +165,7 @@ bool is(const json& sweep, const char* key, const std::string& value) {
   return sweep.is_object() && sweep.value(key, json()) == value;
 }
 
-// A scene that the suite has not takes the place of its first sweep of that kind, at the size that
-// the scene has by itself.
+// A scene missing from the suite gets a copy of the first sweep of that kind, at its default size.
 void put_in_scene(json& sweeps, const SweepOptions& options) {
   const auto of_kind = [&](const json& s) { return is(s, "sweep", options.sweep); };
   if (options.scene.empty() || std::ranges::any_of(sweeps, [&](const json& s) {
@@ -184,15 +183,14 @@ void put_in_scene(json& sweeps, const SweepOptions& options) {
   sweeps.push_back(std::move(sweep));
 }
 
-// The suite with what the options say instead: it then is one like any other, checked as a whole.
+// The suite as the options change it, checked like any other.
 Suite edited_suite(const std::string& path, const SweepOptions& options) {
   const std::string text = read_file(path, "suite");
   const SceneParameters given = options.given_parameters();
-  if (!given.empty() && options.scene.empty())
-    throw UsageError("--set goes with --scene: of which scene is the parameter?");
+  if (!given.empty() && options.scene.empty()) throw UsageError("--set goes with --scene");
   json document = parse_commented(text, path);
   if (!document.is_object() || !document.contains("sweeps") || !document["sweeps"].is_array())
-    return parse_suite(text, path);  // which says what is wrong
+    return parse_suite(text, path);  // which reports what is wrong
   json& sweeps = document["sweeps"];
   put_in_scene(sweeps, options);
   for (json& sweep : sweeps) {
@@ -246,7 +244,7 @@ Suite load_suite(const SweepOptions& given) {
     if (options.sweep == "step")
       throw UsageError("--steps adaptive does not go with --sweep step, whose steps are fixed");
     for (SweepSpec& sweep : suite.sweeps) sweep.adaptive = true;
-    suite.name += "-adaptive";  // files and figures of their own
+    suite.name += "-adaptive";  // separate files and figures
   } else if (options.steps == "all" && options.sweep != "step") {
     for (SweepSpec& sweep : suite.sweeps) sweep.every_step = true;
     suite.name += "-all";
@@ -254,11 +252,11 @@ Suite load_suite(const SweepOptions& given) {
   if (options.reps > 0) suite.reps = options.reps;
   if (options.finest > 0) cut_ladders(suite, options.finest);
   if (options.timeout > 0) suite.timeout = options.timeout;
-  // Where times mean nothing, no run is stopped for being slower than another contestant's.
+  // Meaningless times must not stop a run for being slower than another contestant's.
   if (options.untimed) suite.far_behind = std::numeric_limits<double>::infinity();
   if (options.finest_error > 0) suite.finest_error = options.finest_error;
   if (options.seed >= 0) suite.seed = static_cast<std::uint64_t>(options.seed);
-  // A solver that is no contestant joins when it is asked for by its own name.
+  // A solver that is not a contestant takes part only if named in full.
   if (const auto* backend = inextensible::find_backend(options.solver);
       backend && !backend->contestant) {
     for (SweepSpec& sweep : suite.sweeps) sweep.contestants = {{options.solver, options.solver}};
