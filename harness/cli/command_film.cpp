@@ -10,7 +10,6 @@
 #include "harness/base/statistics.h"
 #include "harness/cli/command.h"
 #include "harness/film/film.h"
-#include "harness/points/suite.h"
 #include "harness/points/tuned.h"
 
 namespace harness {

@@ -76,12 +76,10 @@ void SweepOptions::declare(const Command& to, const Command& of_suites) {
   of_suites.option("--finest", finest, "smallest step of the ladder instead of the suite's", "S",
                    Bounds::positive());
   of_suites.option("--finest-error", finest_error,
-                   "search best steps for levels of error down to this one, over the scene's size, "
-                   "instead of the suite's",
+                   "finest level of error, over the scene's size, that best steps are searched for",
                    "E", Bounds::positive());
   of_suites.flag("--untimed", untimed,
-                 "for counters and errors only: run at once, beside programs that take times; the "
-                 "result is refused wherever times are read");
+                 "for counters and errors only: runs beside other programs; its times are refused");
 }
 
 void add_results(const Command& to, Words& files, const std::string& help) {
@@ -92,8 +90,7 @@ void add_results(const Command& to, Words& files, const std::string& help) {
 void add_solver(const Command& to, std::string& solver) {
   to.alternatives(
       "--solver", solver,
-      "only contestants whose whole name matches, e.g. shake,icd or 'yarn_projection.*'; "
-      "repeatable");
+      "contestants whose whole name matches, e.g. shake,icd or 'yarn_projection.*'; repeatable");
 }
 
 void add_limits(const Command& to, Numbers& limits, const std::string& standard) {

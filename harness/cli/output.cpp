@@ -154,8 +154,7 @@ void OutputOptions::declare(const Command& to, const std::string& standard) {
   to.option("--out", out, "result file; default: results/local/" + standard, "FILE");
   to.flag("--resume", resume, "continue an interrupted run of the same --out");
   to.flag("--force", force,
-          "replace a result or an interrupted run; with --resume: continue a run of another build "
-          "or suite");
+          "replace an old result or run; with --resume: continue that of another build or suite");
   to.flag("--no-plots", no_plots, "draw no figures");
 }
 

@@ -23,7 +23,6 @@ did you mean 'strain' <- --sweep strian --out out.json
 no point is left <- SWEEP --filter nothing
 no case matches <- --sweep stability --case nothing --out out.json
 --filter goes with --sweep strain, resolution and step only (--case chooses <- --sweep stability --filter x --out out.json
---reps <- SWEEP --reps 0
 must be i/N <- SWEEP --shard 2
 i must be from 1 to N <- SWEEP --shard 3/2
 is '1', must be a number above 0 and below 1 <- SWEEP --limit 0.01,1
@@ -49,7 +48,6 @@ cannot read the result file 'folder': it is a folder <- show folder
 'dangling.json': it is a link to 'nowhere.json', which does not exist <- show dangling.json
 cannot read the result file 'empty.json': it is empty <- show empty.json
 must be 24, 30 or 60 <- choose --fps 50
---budget <- choose --budget 2ms
 TABLE
 [[ ! -e nowhere ]] || fail "a refused --out made its folder"
 for document in '{"schema": "inextensible-bench/1"}' "$(head -c 100000 /dev/zero | tr '\0' '[')" '{"schema": 1, "schema": 2}' '[]'; do
@@ -174,21 +172,14 @@ bench list >&- 2>err.txt
 [[ $? == 1 ]] || fail "a closed standard output goes unnoticed"
 bench "${tiny[@]}" --out=-dash.json >/dev/null 2>&1 && [[ -f ./-dash.json ]] || fail "a name that begins with -"
 
-# ---- Hard cases go on where they were ----
+# ---- Hard cases: a partial result is completed without its journal, and shards are the whole (kill -9: loses_nothing_test.sh) ----
 cases=(--sweep stability --case 'Q[1-4]' --solver 'icd|^fast_projection$|shake' --no-plots)
 makes whole.json "${cases[@]}"
-"$BENCH_BINARY" "${cases[@]}" --out cut.json >/dev/null 2>&1 &
-for _ in $(seq 500); do [[ -e cut.json.journal && $(wc -l <cut.json.journal) -ge 3 ]] && break; sleep 0.01; done
-kill -KILL $! 2>/dev/null
-wait $! 2>/dev/null
-[[ ! -e cut.json.journal ]] || refused "--resume continues it" "${cases[@]}" --out cut.json
-makes cut.json "${cases[@]}" --resume
-# ... and a result that an interrupt left goes on too, without its journal.
 holds 'd = read("whole.json"); d["complete"] = False; d["matrix"] = d["matrix"][:3]; json.dump(d, open("part.json", "w"))'
 makes part.json "${cases[@]}" --resume
 for i in 1 2 3; do makes "shard$i.json" "${cases[@]}" --shard "$i/3"; done
 bench show shard1.json shard3.json | grep -q "a shard is missing" || fail "a missing shard of hard cases"
-for files in cut.json part.json "shard1.json shard2.json shard3.json"; do
+for files in part.json "shard1.json shard2.json shard3.json"; do
   diff <(bench show whole.json | tail -n +2) <(bench show $files | tail -n +2) || fail "$files: not the whole"
 done
 
