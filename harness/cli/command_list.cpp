@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <functional>
 #include <span>
+#include <tuple>
 
 #include "harness/answers/answer.h"
 #include "harness/claims/claims.h"
@@ -52,15 +53,11 @@ json parameter_row(const SceneParameterInfo& parameter) {
 
 json metrics() {
   json rows = json::array();
-  const auto add = [&rows](const auto& field) {
-    rows.push_back(row_of(field.name, field.meaning, {{"unit", field.unit}}));
-  };
-  for_each_field(spec_fields, add);
-  for_each_field(size_fields, add);
-  for_each_field(measure_fields, add);
-  for_each_field(sample_fields, add);
-  for_each_field(result_fields, add);
-  for_each_field(phase_fields, add);
+  for_each_field(std::tuple_cat(spec_fields, size_fields, measure_fields, sample_fields,
+                                result_fields, phase_fields),
+                 [&rows](const auto& field) {
+                   rows.push_back(row_of(field.name, field.meaning, {{"unit", field.unit}}));
+                 });
   return rows;
 }
 
