@@ -207,7 +207,7 @@ struct Choose : SceneOptions {
   }
 
   int run() {
-    if (std::count(std::begin(frame_rates), std::end(frame_rates), frames_per_second) == 0)
+    if (std::ranges::count(frame_rates, frames_per_second) == 0)
       throw UsageError("--fps is " + number_text(frames_per_second) + ", must be 24, 30 or 60");
     Wish wish{error, frames_per_second, 1e-3 * budget};
     const Suite tried = suite();

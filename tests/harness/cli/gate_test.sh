@@ -41,14 +41,14 @@ edit base.json fewer.json 'd["points"] = [p for p in d["points"] if p["solver"] 
 exits 4 'MISSING' compare base.json fewer.json "${gate[@]}"
 exits 0 'NEW' compare fewer.json base.json "${gate[@]}"
 
-# A baseline says the same as the result it is of.
+# A baseline compares like its result.
 "$BENCH_BINARY" baseline base.json --out baseline.json >/dev/null || fail baseline
 [[ $(grep -c '^{"sweep"' baseline.json) == 36 ]] && ! grep -q seconds baseline.json || fail "a baseline has times, or not one point a line"
 exits 0 '36 SAME' compare baseline.json again.json
 exits 4 'SLOWER' compare baseline.json faulty.json
 
-# A result whose every time is longer does not pass: with enough runs it is slower, with one each nobody can say, which has an
-# exit code of its own. On a machine that was busy, or not as fast in both, times must differ by more than its own speed did.
+# A result whose times are all longer does not pass: with enough runs it is slower, with one each it is undecided (exit code 6).
+# Times must differ by more than the machine's own speed did.
 # timed NAME RUNS FACTOR [SENTINEL]: base.json with so many samples a point, all longer by a factor.
 timed() {
   local sentinel=${4-"{'noisy': False}"}
