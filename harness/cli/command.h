@@ -1,4 +1,4 @@
-// What verbs have in common, and the list of them.
+// The list of verbs, and what they share.
 #pragma once
 
 #include <unistd.h>
@@ -9,7 +9,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <ostream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,9 +29,8 @@ namespace harness {
 
 // ---- The verbs, in the order of the program's help ----
 
-// VERB(name, children, summary): a file of this folder has NAME_verb(). A verb with children
-// computes in them, and answers an interruption with what was done until then. The first one is
-// what the program does without a verb.
+// VERB(name, children, summary): NAME_verb() is defined in this folder; for children see
+// Verb::has_children. The first one runs if no verb is given.
 #define HARNESS_VERBS(VERB)                                                                       \
   VERB(sweep, true,                                                                               \
        "time over strain limit, resolution or step, or hard cases: bench --sweep AXIS")           \
@@ -69,77 +67,63 @@ inline std::vector<Verb> verbs() {
 #undef HARNESS_ROW
 }
 
-// ---- Options that several verbs have: each has one name, one grammar and one help ----
-//
-// What they are about is checked here, and what is wrong is a UsageError.
+// ---- Options that several verbs share. Invalid values throw UsageError ----
 
-// standard: what is taken if the option is not given, here and below.
+// standard: the default that the help names, here and below.
 struct SceneOptions {
-  std::string scene, n;    // n: numbers between commas
+  std::string scene;
+  Numbers n;
   Words set;               // NAME=NUMBER
-  std::string pins, body;  // of a mesh
+  std::string pins, body;  // for a mesh
 
   void declare(const Command& to, const std::string& standard);
-  std::string name() const;                     // of the scene, with the parts of a mesh
-  SceneParameters given_parameters() const;     // of --set
-  SceneParameters complete_parameters() const;  // where one scene of one size is chosen
+  std::string name() const;                     // with the pins and body of a mesh
+  SceneParameters given_parameters() const;     // from --set
+  SceneParameters complete_parameters() const;  // for a single scene and size
 };
 
-// What selects the runs of a sweep.
-struct SelectionOptions : SceneOptions {  // n: instead of the suite's
-  std::string sweep, solver, filter, exclude, config, profile = "default";
-  std::string limits;  // numbers between commas, instead of the suite's
-
-  // of_suites: of those that hard cases do not have.
-  void declare_scenes(const Command& to, const Command& of_suites);
-  void declare(const Command& to, const Command& of_suites);
-};
-
-// How it is run, too.
-struct SweepOptions : SelectionOptions {
-  std::string steps = "search";
+// A sweep: what selects its runs, and how they are run.
+struct SweepOptions : SceneOptions {
+  std::string sweep, solver, filter, exclude, config, profile = "default", steps = "search";
+  Numbers limits;  // like n, instead of the suite's
   int reps = 0;
   double timeout = 0, finest_error = 0, finest = 0;
   std::int64_t seed = -1;
-  bool untimed = false;  // times are not used: does not wait for others that take times
+  bool untimed = false;  // need not wait for other programs that take times
 
+  // Each adds to the one before. of_suites: options that hard cases do not have.
+  void declare_scenes(const Command& to, const Command& of_suites);
+  void declare_selection(const Command& to, const Command& of_suites);
   void declare(const Command& to, const Command& of_suites);
 };
 
 void add_results(const Command& to, Words& files, const std::string& help);
 void add_solver(const Command& to, std::string& solver);
-void add_limits(const Command& to, std::string& limits, const std::string& standard);
+void add_limits(const Command& to, Numbers& limits, const std::string& standard);
 void add_filters(const Command& to, std::string& filter, std::string& exclude);
-void add_profile(const Command& to, std::string& profile);
-void add_config(const Command& to, std::string& config);
+void add_suite(const Command& to, const Command& of_suites, std::string& profile,
+               std::string& config);
 void add_timeout(const Command& to, double& timeout, const std::string& standard);
-void add_seed(const Command& to, std::int64_t& seed, const std::string& help);
 void add_no_wait(const Command& to, bool& no_wait);
 
 std::vector<std::string> profiles();
-// Both: none for "". Each alternative of the first must match the name of some solver or of some
-// contestant.
+// Both: none for "". Each alternative of a solver pattern must match a solver or contestant.
 std::optional<Pattern> solver_pattern(const std::string& text, const Contestants& contestants = {});
 std::optional<Pattern> pattern_of(const std::string& option, const std::string& text);
-// Numbers of a list between commas, "20,40,80".
-std::vector<double> numbers_of(const std::string& option, const std::string& text,
-                               const Bounds& bounds);
-double one_number_of(const std::string& option, const std::string& text, const Bounds& bounds);
 
-std::string suite_path(const SelectionOptions& options);
+std::string suite_path(const SweepOptions& options);
 Suite load_suite(const SweepOptions& options);
-SweepFilters filters_of(const SelectionOptions& options);
-// Scenes of the plan without a reference, by its file's name: their points carry no trajectory
-// error.
+SweepFilters filters_of(const SweepOptions& options);
+// Scenes of the plan that have no reference, hence no trajectory errors, by the reference's file.
 using SceneOfReference = std::pair<std::string, SceneParameters>;
 std::map<std::string, SceneOfReference> without_reference(const std::vector<Search>& searches,
                                                           ReferenceFolder& references);
-// The methods that made it, and for how long the motion is known.
+// Its methods, and how long the motion is known.
 std::string reference_text(const Reference& reference);
 
-// ---- What a long run shows while it lasts and leaves when it ends ----
+// ---- Progress and output of long runs ----
 
-// On a terminal one line, rewritten; otherwise, for logs, some twenty lines for each part.
+// On a terminal one line that is rewritten; in logs about twenty lines for each part.
 class Progress {
  public:
   Progress() = default;
@@ -147,7 +131,7 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  void begin_part();  // what `fraction` and the time that is left are of
+  void begin_part();  // `fraction` and the remaining time refer to it
   void show(double fraction, const std::string& head, const std::string& text = {});
   void show(std::size_t done, std::size_t all, const std::string& text);  // "3 of 10"
   void clear();
@@ -156,11 +140,11 @@ class Progress {
   using Time = std::chrono::steady_clock::time_point;
   const bool terminal_ = isatty(STDERR_FILENO) == 1;
   Time start_ = std::chrono::steady_clock::now(), part_ = start_;
-  int lines_ = 0;          // of the log, in this part
-  std::size_t width_ = 0;  // of the line on the terminal
+  int lines_ = 0;          // logged in this part
+  std::size_t width_ = 0;  // of the terminal's line
 };
 
-// Events of small runs that a journal keeps and `progress` shows.
+// Events that record small runs in the journal and show them.
 RunEvents journaled_events(Journal& journal, Progress& progress);
 
 struct OutputOptions {
@@ -170,23 +154,23 @@ struct OutputOptions {
   void declare(const Command& to, const std::string& standard);
 };
 
-// results/local/<stem><ending>; where that exists, <stem>-2<ending> and so on. last: the last that
+// The first free of results/local/<stem><ending>, <stem>-2<ending> and so on. last: the last that
 // exists, unless an unfinished run follows it.
 std::string default_output(const std::string& stem, const std::string& ending, bool last = false);
 
 struct Finished {
   nlohmann::json document = nullptr;  // null: there is nothing to write
   bool complete = true;               // false: interrupted
-  int code = success;                 // of a complete one
+  int code = success;                 // if complete
 };
 
-// What is run: what must agree with the run that it goes on with, and how its results are kept.
+// A run that can be interrupted and resumed.
 struct Undertaking {
-  std::string stem;               // of the default output
-  nlohmann::json context, suite;  // with context.selection: what must agree (identity())
+  std::string stem;               // of the default output's name
+  nlohmann::json context, suite;  // must agree with a resumed run's (identity())
   const char* rows;               // the list of results in its file: "points", "matrix" or "rows"
-  const char* what;               // these are, for messages
-  // Runs what the journal does not know. before: context of the run that it continues, or null.
+  const char* what;               // the same in messages
+  // Runs what the journal lacks. before: context of the resumed run, or null.
   std::function<Finished(Journal& journal, const nlohmann::json& before)> run;
   // Adds the results of a file to the journal.
   std::function<void(const nlohmann::json& result, Journal&)> add = [](auto&&...) {};
@@ -196,31 +180,29 @@ struct Undertaking {
   };
 };
 
-// Runs it into --out or results/local/<stem>.json, and draws the figures; an ExitCode. --resume and
-// --rerun-failed continue what an earlier run has left in the journal or else in its result. Throws
-// UsageError, with the options that would help, for what is there and not to be touched without
-// them. An interrupted run leaves its part of the result, but never in place of a whole one.
+// Writes to --out or results/local/<stem>.json and draws the figures; returns an ExitCode. --resume
+// and --rerun-failed continue from an earlier run's journal or else its result. Throws UsageError,
+// naming the options that help, for files that must not be replaced without them. An interrupted
+// run writes a partial result, but never over a complete one.
 int carry_out(const OutputOptions& options, const Undertaking& undertaking);
 
 // ---- Figures, films and reports, drawn by the scripts of plots/ ----
 
-// Runs a script of plots/ with these arguments and an --out in a folder of its own. What it has
-// written takes its place in the folder of `out`, file by file and each whole, and is named on
-// stdout. Its exit code; where that is not 0, nothing is touched.
+// Runs a script of plots/ with an --out in a temporary folder, and returns its exit code. If that
+// is 0, each file is moved atomically into the folder of `out` and named on stdout.
 int draw(const std::string& script, const Words& arguments, const std::string& out);
 
 bool is_sweep(const nlohmann::json& document);  // over strain, resolution or step
 
-// A result for people, as wide as the terminal. name: what hints call it. all: of a sweep every
-// contestant too, and how runs failed.
+// A result as text, as wide as the terminal. name: the file in hints. all: every contestant of a
+// sweep, and how runs failed.
 std::string text_of_result(const nlohmann::json& document, const std::string& name,
                            bool all = false);
 
-// A result as plots/ reads it: a sweep with its analysis. Throws UsageError where nothing was
-// timed.
+// A result as plots/ reads it: a sweep with its analysis. Throws UsageError if it is untimed.
 nlohmann::json with_analysis(nlohmann::json document);
 
-// The figures of a result, whose names begin with `name`. folder: "" for the one that we are in.
+// Figures of a result, whose names begin with `name`. folder: "" is the current one.
 int draw_figures(nlohmann::json document, const std::string& name, const std::string& folder);
 
 }  // namespace harness

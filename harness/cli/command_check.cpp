@@ -1,5 +1,4 @@
-// bench check: whether a solver keeps what every solver must. bench answers: what solvers make of
-// figures that theory knows.
+// bench check: tests what every solver must fulfil. bench answers: solvers against exact solutions.
 #include <algorithm>
 #include <iomanip>
 #include <sstream>
@@ -33,7 +32,8 @@ struct Check {
     add_solver(command, solver);
     command.require({"--solver"});
     command.flag("--quick", quick, "without the hard cases, which may take minutes");
-    add_seed(command, seed, "of methods that draw random numbers");
+    command.option("--seed", seed, "of methods that draw random numbers", "N",
+                   Bounds::exact_number());
   }
 
   bool conforms_to_all(const std::string& name) const {

@@ -27,7 +27,7 @@ struct Choice {
   const SweepSpec& sweep;
   Wish wish;
   const Trials& trials;
-  double seconds;  // that it took
+  double seconds;  // elapsed
   Recommendation found = recommend(trials.points, wish);
 
   std::string text(const Pick& pick) const {
@@ -40,7 +40,7 @@ struct Choice {
            (std::isnan(pick.error) ? "unknown" : percent(pick.error));
   }
 
-  // Why there is no run to take.
+  // Why no run can be recommended.
   const char* nothing_found() const {
     if (trials.complete)
       return "no solver meets limit and error: a larger --error or --limit may be met\n";
@@ -92,12 +92,12 @@ struct Choice {
 
 // ---- Measuring ----
 
-constexpr double far_behind = 4;  // times the fastest so far: a run that takes longer is stopped
-constexpr int finest_part = 32;   // of a frame: the smallest step
-constexpr double reference_share = 0.4;  // of the time, for a reference at most
+constexpr double far_behind = 4;         // times the fastest run so far: slower runs are stopped
+constexpr int finest_part = 32;          // the smallest step is this part of a frame
+constexpr double reference_share = 0.4;  // at most, of --seconds
 
-// Contestants of the scene that --solver matches, and what it names that does not compete there.
-// Throws UsageError for a name that the scene has nothing for.
+// The scene's contestants that --solver matches, and solvers named in full that do not compete
+// there. Throws UsageError if there are none.
 Contestants contestants_for(const std::string& given, const SceneType& type,
                             const SceneParameters& parameters) {
   Contestants all = competitors(type, parameters);
@@ -114,7 +114,7 @@ Contestants contestants_for(const std::string& given, const SceneType& type,
   return all;
 }
 
-// A kept reference, or a quick one made now, which is then among `references`. Null: neither.
+// A stored reference, or else a quick one, which is added to `references`. Null: neither.
 std::shared_ptr<const Reference> reference_for(const SweepSpec& sweep, ReferenceFolder& references,
                                                const ChooseLimits& limits) {
   if (auto kept = references.find(sweep.scene, sweep.scene_parameters)) return kept;
@@ -162,15 +162,15 @@ Trials measure(const Suite& suite, const Wish& wish, const ChooseLimits& limits,
 }
 
 struct Choose : SceneOptions {
-  std::string solver, limits = "0.01";
-  double budget = 0;  // ms; 0: none
+  std::string solver;
+  double limit = 0.01, budget = 0;  // budget: ms; 0: none
   double frames_per_second = 60, error = headline_error, seconds = 60;
   bool no_wait = false;
 
   void declare(const Command& command) {
     scene = "drape";
     SceneOptions::declare(command, scene);
-    add_limits(command, limits, limits);
+    command.option("--limit", limit, "strain limit; default: 0.01", "STRAIN", Bounds::strain());
     command.option("--error", error,
                    "permitted distance from the reference, over the scene's size; default: 0.02",
                    "E", Bounds::positive());
@@ -179,7 +179,7 @@ struct Choose : SceneOptions {
     command.option("--budget", budget, "milliseconds of computing that a frame may take", "MS",
                    Bounds::positive());
     add_solver(command, solver);
-    command.option("--seconds", seconds, "that measuring may take; default: 60", "S",
+    command.option("--seconds", seconds, "time that measuring may take; default: 60", "S",
                    Bounds::positive());
     add_no_wait(command, no_wait);
   }
@@ -196,7 +196,7 @@ struct Choose : SceneOptions {
     sweep.sweep = "strain";
     sweep.refine = false;  // the time is better spent on other contestants
     sweep.scene = name();
-    sweep.limits = {one_number_of("--limit", limits, Bounds::strain())};
+    sweep.limits = {limit};
     sweep.scene_parameters = complete_parameters();
     sweep.resolutions = {static_cast<int>(sweep.scene_parameters.at(type->resolution))};
     sweep.coarsest = 1 / frames_per_second;
@@ -207,7 +207,7 @@ struct Choose : SceneOptions {
   }
 
   int run() {
-    if (std::count(std::begin(frame_rates), std::end(frame_rates), frames_per_second) == 0)
+    if (std::ranges::count(frame_rates, frames_per_second) == 0)
       throw UsageError("--fps is " + number_text(frames_per_second) + ", must be 24, 30 or 60");
     Wish wish{error, frames_per_second, 1e-3 * budget};
     const Suite tried = suite();

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// What the commands that compare have in common: a gate, and reports beside the table on stdout.
+// Options of the verbs that compare: a gate, and reports beside the table on stdout.
 struct CompareOptions {
   std::string gate, junit, markdown;
 
@@ -31,16 +31,15 @@ struct CompareOptions {
     return read_gate(gate.empty() ? source_path("configs/gate.json") : gate);
   }
 
-  // Throws UsageError for a report that cannot be written, before anything is done.
+  // Throws UsageError for a report that cannot be written.
   void check_reports() const {
     for (const std::string& path : {junit, markdown}) {
       if (!path.empty()) check_writable(path);
     }
   }
 
-  // Prints the comparison, writes the reports; the exit code: a failure outranks a regression.
-  // name: of the JUnit suite and the Markdown heading. undecided: what is said if times of best
-  // points cannot be told apart.
+  // Prints the comparison and writes the reports. Returns the exit code: a failure outranks a
+  // regression. name: JUnit suite and Markdown heading. undecided: message for ambiguous times.
   int report(const Comparison& comparison, const std::string& name,
              const std::string& undecided) const {
     if (!junit.empty()) write_atomically(junit, junit_xml(comparison, name));
@@ -108,11 +107,9 @@ struct Baseline {
 
 // ---- Two builds ----
 
-constexpr double run_timeout = 60;  // s, of one run
-constexpr double sweep_timeout = 3600;
+constexpr double run_timeout = 60, sweep_timeout = 3600;  // s
 
-// A name without a folder is a file here, else, if it is its name, this program, else one on the
-// PATH.
+// A name without a folder is a file in the current folder, else this program, else one on the PATH.
 std::string program_named(const std::string& name) {
   if (name.find('/') == std::string::npos && fs::exists(name)) return "./" + name;
   const fs::path own = fs::read_symlink("/proc/self/exe");
@@ -132,7 +129,7 @@ struct Program {
     return run_program(words, timeout, input);
   }
 
-  // Before anything is timed: that it is one of ours, and takes its plug-ins.
+  // Throws unless this is a bench that has `point` and loads its plug-ins.
   void check() const {
     const ProgramResult help = Program{path, {}}.run({"point", "--help"});
     if (help.exit_code == 127) throw UsageError("'" + path + "' is no program");
@@ -151,7 +148,7 @@ struct Program {
   }
 };
 
-// A point that no process has printed is one that failed.
+// A point that the process does not print has failed.
 ComparedPoint run_one(const Program& program, const PairedPoint& point) {
   const ProgramResult ran =
       program.run({"point", "--samples", std::to_string(point.samples)},
@@ -171,8 +168,8 @@ struct Ab : CompareOptions {
   std::string profile = "quick", config, solver, scene, filter, exclude;
   int pairs = 15, confirming = 25;
   bool no_wait = false;
-  // s that a process measures at least, so that runs of a millisecond are seen often enough for one
-  // of them to be undisturbed, and starting the process does not dominate.
+  // s a process. Long enough that one of many short runs is undisturbed and that starting the
+  // process does not dominate.
   double least_measured = 0.05;
 
   void declare(const Command& command) {
@@ -183,8 +180,7 @@ struct Ab : CompareOptions {
                        "a plug-in of the program before; repeatable", "FILE");
     command.repeatable("--new-plugin", after.plugins, "a plug-in of the program after; repeatable",
                        "FILE");
-    add_profile(command, profile);
-    add_config(command, config);
+    add_suite(command, command, profile, config);
     const Bounds number_of_pairs{.least = 4, .most = 1000, .whole = true};  // fewer prove nothing
     command.option("--pairs", pairs, "processes of each build for a point; default: 15", "N",
                    number_of_pairs);
@@ -200,7 +196,7 @@ struct Ab : CompareOptions {
     CompareOptions::declare(command);
   }
 
-  // Counters are told and fail nothing, unless a gate was asked for: here times are the question.
+  // Without --gate, counters are reported but fail nothing: the question is about times.
   Gate gate_of() const {
     Gate passes = given_gate();
     if (gate.empty()) {
@@ -212,8 +208,7 @@ struct Ab : CompareOptions {
     return passes;
   }
 
-  // The best points of the old program, with the stiffness that it found; the new one runs the
-  // same.
+  // The best points of the old program, with the stiffness that it found, for both programs.
   std::vector<PairedPoint> best_points() const {
     const TemporaryFolder folder("ab");
     const std::string out = folder.file("old.json");
@@ -255,7 +250,7 @@ struct Ab : CompareOptions {
     const TimingLock lock(!no_wait);
     std::cerr << "looking for the best steps of " << before.path << " ..." << std::endl;
     std::vector<PairedPoint> points = best_points();
-    // One process of each says whether their counters compare.
+    // One run of each tells whether their counters are comparable.
     Comparability can;
     const std::string old_print = run_one(before, points.front()).fingerprint;
     if (old_print.empty() || old_print != run_one(after, points.front()).fingerprint)

@@ -10,21 +10,20 @@
 #include "harness/base/statistics.h"
 #include "harness/cli/command.h"
 #include "harness/film/film.h"
-#include "harness/points/suite.h"
 #include "harness/points/tuned.h"
 
 namespace harness {
 namespace {
 
 constexpr int default_width = 480;
-// Rays a pixel, each way: a still can take its time, a film has hundreds of pictures.
+// Rays a pixel in each direction: a film has hundreds of pictures, so it gets fewer than a still.
 constexpr int still_samples = 6, film_samples = 3;
 
 using analysis::percent;
 
 using Writer = std::vector<std::string> (*)(const Recording&, const FilmRun&, const std::string&,
                                             const std::string&);
-// Formats by their endings, and who writes files for other programs; null: pictures.
+// Formats by file ending, with the writer of files for other programs; null: pictures.
 const std::map<std::string, Writer> formats{{".webp", nullptr},  {".mp4", nullptr},
                                             {".png", nullptr},   {".obj", write_obj},
                                             {".pvd", write_vtk}, {".pc2", write_pc2}};
@@ -52,7 +51,8 @@ void print_times(const Recording& recording) {
 }
 
 struct Film : SceneOptions {
-  std::string solver = "fast_projection", limits = "0.01", out, stills;
+  std::string solver = "fast_projection", out;
+  Numbers limits{0.01}, stills;
   double step = FilmSpec{}.step;  // s
   double frames_per_second = 30;
   int width = 0;  // pixels; 0: not given
@@ -61,12 +61,13 @@ struct Film : SceneOptions {
     scene = "drape";
     SceneOptions::declare(command, scene);
     add_solver(command, solver);
-    add_limits(command, limits, limits);
+    add_limits(command, limits, "0.01");
     command.option("--step", step, "s; shortened to a whole part of a frame; default: 0.01", "S",
                    Bounds::positive());
     command.option("--fps", frames_per_second, "frames a second", "N", Bounds::positive());
     command.option("--stills", stills,
-                   "times of the pictures in a .png, s, between commas; default: four", "TIMES");
+                   "times of the pictures in a .png, s, between commas; default: four", "TIME",
+                   Bounds::at_least(0));
     command.option("--width", width, "of each picture; default: 480", "PIXELS",
                    {.least = 16, .most = 4096, .whole = true});
     command.option("--out", out,
@@ -84,13 +85,13 @@ struct Film : SceneOptions {
       if (wanted->matches(backend.name)) film.solvers.push_back({backend.name, backend.name});
     }
     tune(film.solvers, read_tuned_up_to_date("tuned.json"), find_scene(film.scene)->kind());
-    film.strain_limits = numbers_of("--limit", limits, Bounds::strain());
+    film.strain_limits = limits;
     film.step = step;
     film.frames_per_second = frames_per_second;
     return film;
   }
 
-  // Which frames are drawn: all of a film; of stills those nearest to the times given, or four.
+  // The frames drawn: all for a film; for stills those nearest to the given times, or four.
   std::vector<std::size_t> shown_frames(const FilmSpec& film, bool still) const {
     const std::size_t last = frames_in(film) - 1;
     std::vector<std::size_t> frames(last + 1);
@@ -99,7 +100,7 @@ struct Film : SceneOptions {
     if (stills.empty()) return {0, last / 3, 2 * last / 3, last};
     frames.clear();
     const double end = static_cast<double>(last) / film.frames_per_second;
-    for (const double time : numbers_of("--stills", stills, Bounds::at_least(0))) {
+    for (const double time : stills) {
       if (time > end + 0.5 / film.frames_per_second)
         throw UsageError("--stills: " + number_text(time) + " s is not within the film, 0 to " +
                          number_text(end) + " s (--set duration=SECONDS changes that)");
@@ -119,7 +120,7 @@ struct Film : SceneOptions {
     if (width > 0 && format->second) throw UsageError("--width: '" + out + "' has no pictures");
   }
 
-  // A scene of impossible measures, or a method that cannot run it, is the user's mistake.
+  // Impossible scene parameters, or a method that cannot run the scene, are the user's mistake.
   static Recording recorded(const FilmSpec& film) {
     Progress progress;
     try {
@@ -132,7 +133,7 @@ struct Film : SceneOptions {
     }
   }
 
-  // Pictures go to the script that puts them together in a folder of their own.
+  // The script assembles the pictures from a temporary folder.
   int draw_pictures(const Recording& recording, const std::vector<std::size_t>& frames,
                     bool still) const {
     const TemporaryFolder folder("film");
@@ -155,7 +156,7 @@ struct Film : SceneOptions {
     const std::string ending = place.extension().string();
     check_format(ending);
     const bool still = ending == ".png";
-    const auto frames = shown_frames(film, still);  // refused before anything runs
+    const auto frames = shown_frames(film, still);  // before anything runs
     check_writable(out);
     const Recording recording = recorded(film);
     print_times(recording);

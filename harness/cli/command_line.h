@@ -1,4 +1,4 @@
-// What a verb is, and how it says which options it has.
+// Verbs and how they declare their options.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,9 @@ class Option;
 namespace harness {
 
 using Words = std::vector<std::string>;
+using Numbers = std::vector<double>;
 
-std::optional<double> number_in(const std::string& text);  // none: it is not a number alone
+std::optional<double> number_in(const std::string& text);  // none unless it is one number
 
 // docs/using.md explains them.
 enum ExitCode {
@@ -37,31 +38,31 @@ enum ExitCode {
 
 using Action = std::function<int(const Words& typed)>;  // returns an ExitCode
 
-// Where a verb adds its options. What an option is written to must outlive the verb's run.
+// A verb's options are added to it. The variables that they set must outlive the verb's run.
 class Command {
  public:
   explicit Command(CLI::App* app = nullptr, std::string group = {})
       : app_(app), group_(std::move(group)) {}
 
   using Place = std::variant<std::reference_wrapper<std::string>, std::reference_wrapper<Words>,
-                             std::reference_wrapper<double>, std::reference_wrapper<int>,
-                             std::reference_wrapper<std::int64_t>>;
+                             std::reference_wrapper<Numbers>, std::reference_wrapper<double>,
+                             std::reference_wrapper<int>, std::reference_wrapper<std::int64_t>>;
 
-  // An option if the name begins with dashes, a word in its place if not. `type`: what the help
-  // calls the value.
+  // An option if the name begins with dashes, else a positional argument. `type`: the value's name
+  // in the help. Numbers are separated by commas, and the bounds apply to each.
   void option(const std::string& name, Place place, const std::string& help,
               const std::string& type, const Bounds& bounds = {}) const;
-  // One value each time; Words as an option take all words that follow.
+  // One value each time, whereas option() with Words takes all words that follow.
   void repeatable(const std::string& name, Words& values, const std::string& help,
                   const std::string& type) const;
-  // A regular expression; of several, given one by one or between commas, what matches one of them.
+  // A regular expression; several, repeated or separated by commas, are alternatives.
   void alternatives(const std::string& name, std::string& value, const std::string& help) const;
   // "4G" is 4 GiB.
   void byte_count(const std::string& name, double& value, const std::string& help) const;
   void flag(const std::string& name, bool& value, const std::string& help) const;
 
   void require(std::initializer_list<const char*> names) const;
-  // Options that the help lists under a heading of their own; which of them was typed, if any.
+  // Options under a heading of their own in the help. one_typed(): one that was given, or "".
   Command group(const std::string& heading) const { return Command(app_, heading); }
   const std::string& heading() const { return group_; }
   std::string one_typed() const;
@@ -73,16 +74,16 @@ class Command {
   std::string group_;
 };
 
-// A verb of the program. `add` adds its options, and returns what is done if it is chosen.
+// `add` adds the verb's options and returns its action.
 struct Verb {
   std::string name, summary;
   Action (*add)(const Command& command);
-  // It computes in children of its own, and answers an interruption with what was done until then.
+  // It computes in child processes, and an interruption leaves a partial result.
   bool has_children = false;
 };
 
-// The action of a verb whose options are the members of a struct, which adds them in declare() and
-// acts in run(), with the words of the command line for the record where it asks for them.
+// The action of a verb given as a struct: declare() adds its members as options, run() acts, and
+// may take the typed words for the record.
 template <class Options>
 Action verb(const Command& command) {
   const auto options = std::make_shared<Options>();

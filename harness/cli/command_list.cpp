@@ -1,7 +1,8 @@
-// bench list: what there is.
+// bench list: prints solvers, scenes, suites and other lists.
 #include <algorithm>
 #include <functional>
 #include <span>
+#include <tuple>
 
 #include "harness/answers/answer.h"
 #include "harness/claims/claims.h"
@@ -32,7 +33,6 @@ List list(const char* name, const Items& items, const Row& row) {
   return {name, [=] { return rows_of(items(), row); }};
 }
 
-// With further keys.
 json row_of(const std::string& name, const std::string& meaning, json row = json::object()) {
   row["name"] = name;
   row["meaning"] = meaning;
@@ -53,15 +53,11 @@ json parameter_row(const SceneParameterInfo& parameter) {
 
 json metrics() {
   json rows = json::array();
-  const auto add = [&rows](const auto& field) {
-    rows.push_back(row_of(field.name, field.meaning, {{"unit", field.unit}}));
-  };
-  for_each_field(spec_fields, add);
-  for_each_field(size_fields, add);
-  for_each_field(measure_fields, add);
-  for_each_field(sample_fields, add);
-  for_each_field(result_fields, add);
-  for_each_field(phase_fields, add);
+  for_each_field(std::tuple_cat(spec_fields, size_fields, measure_fields, sample_fields,
+                                result_fields, phase_fields),
+                 [&rows](const auto& field) {
+                   rows.push_back(row_of(field.name, field.meaning, {{"unit", field.unit}}));
+                 });
   return rows;
 }
 
@@ -116,7 +112,7 @@ const std::vector<List> lists{
         [](const auto& status) {
           return row_of(status.name, status.meaning, {{"letter", status.letter}});
         })};
-constexpr int usual = 3;  // of them, if no list is named
+constexpr int usual = 3;  // how many are printed if no list is named
 
 Words list_names() {
   Words names = names_of(lists);
@@ -159,7 +155,7 @@ struct ListVerb : SweepOptions {
                        " (with --sweep); default: the first three. result.schema and the like: "
                        "that file of configs/, generated from the tables in the code",
                    "WHAT");
-    SelectionOptions::declare(command, command);
+    declare_selection(command, command);
     command.flag("--json", as_json, "as JSON");
   }
 
@@ -173,7 +169,7 @@ struct ListVerb : SweepOptions {
     }
   }
 
-  // What is no list of rows.
+  // Points and schemas, which are not lists of rows.
   void print_other() const {
     if (as_json) throw UsageError("--json does not go with list " + what);
     if (what == "points") return print_points();

@@ -1,4 +1,4 @@
-// bench point: runs single points in this process; what bench ab and other programs build upon.
+// bench point: runs single points in this process, for bench ab and other programs.
 #include <cmath>
 #include <tuple>
 
@@ -15,27 +15,20 @@ namespace {
 
 using nlohmann::json;
 
-void check_spec(PointSpec& spec, const std::string& where) {
-  const auto type = checked_scene(spec.scene, where);
-  const SceneParameters parameters = [&] {
-    try {
-      return complete_parameters(*type, spec.scene_parameters);
-    } catch (const UsageError& error) {
-      throw UsageError(where + ": 'scene_parameters': " + error.what());
-    }
-  }();
+void check_spec(PointSpec& spec) {
+  const auto type = checked_scene(spec.scene);
+  const SceneParameters parameters = complete_parameters(*type, spec.scene_parameters);
   if (parameters != spec.scene_parameters)
-    throw UsageError(where + ": 'scene_parameters' is " + value_text(spec.scene_parameters) +
+    throw UsageError("'scene_parameters' is " + value_text(spec.scene_parameters) +
                      ", must hold every parameter of the scene: " + json(parameters).dump());
   std::tie(spec.vertices, spec.constraints) = type->counts(parameters);
-  check_plain_name(spec.contestant, where + ": 'contestant'");
-  check_settings(spec.settings, where + ": 'settings'", checked_backend(spec.solver, where));
+  check_plain_name(spec.contestant, "'contestant'");
+  check_settings(spec.settings, "'settings'", checked_backend(spec.solver, "'solver'"));
   if (!(spec.strain_limit > 0) || !std::isfinite(spec.strain_limit))
-    throw UsageError(where + ": 'strain_limit' is " + json(spec.strain_limit).dump() +
-                     ", must be above 0");
+    throw UsageError("'strain_limit' is " + json(spec.strain_limit).dump() + ", must be above 0");
   const double duration = parameters.at("duration");
   if (!(spec.step > 0 && spec.step <= duration && duration / spec.step <= most_steps))
-    throw UsageError(where + ": 'step' is " + json(spec.step).dump() +
+    throw UsageError("'step' is " + json(spec.step).dump() +
                      ", must be above 0 s and at most the duration, " + json(duration).dump() +
                      " s");
 }
@@ -47,15 +40,15 @@ std::vector<PointSpec> read_specs(std::istream& in) {
   for (int number = 1; std::getline(in, line); ++number) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     const std::string where = "point on line " + std::to_string(number);
+    const json given = parse_line(line, where);
     try {
-      // A point that is typed by hand may leave these out.
+      // These may be omitted from a point that is typed by hand.
       json object{{"contestant", ""}, {"settings", json::object()}, {"adaptive", false}};
-      object.update(parse_line(line, where));
-      specs.push_back(spec_of(object));
-    } catch (const json::exception& error) {
+      object.update(given);
+      check_spec(specs.emplace_back(spec_of(object)));
+    } catch (const std::exception& error) {
       throw UsageError(where + ": " + error.what());
     }
-    check_spec(specs.back(), where);
   }
   if (specs.empty())
     throw UsageError("no point on standard input: give points of a result file, one JSON a line");
@@ -73,7 +66,7 @@ struct PointVerb {
   }
 
   PointResult timed(const PointSpec& spec, const RunLimits& limits) const {
-    const OutputToError no_output;  // a line of the solver's own would be read as a result
+    const OutputToError no_output;  // a line printed by the solver would be read as a result
     PointResult point = run_point(spec, limits);
     RunLimits of_more = limits;
     of_more.sample_of = &point;

@@ -9,7 +9,7 @@
 namespace harness {
 namespace {
 
-// Its runs are kept beside it: what was stopped goes on after those that were done.
+// Finished runs are stored beside it, so that an interrupted computation resumes after them.
 void make_reference(const std::string& scene, const SceneParameters& parameters, double finest) {
   const std::filesystem::path path(reference_path(scene, parameters));
   std::filesystem::create_directories(path.parent_path());
@@ -28,31 +28,29 @@ void make_reference(const std::string& scene, const SceneParameters& parameters,
   std::cout << scene << ": " << reference_text(reference) << '\n' << path.string() << std::endl;
 }
 
-struct ReferenceVerb : SelectionOptions {
+struct ReferenceVerb : SweepOptions {
   bool again = false;
-  double finest = 0;
 
   void declare(const Command& command) {
     declare_scenes(command, command);
-    command.flag("--again", again, "also what exists already");
+    command.flag("--again", again, "also compute references that exist already");
     command.option("--finest", finest, "smallest step of step halving, s", "S", Bounds::positive());
   }
 
-  // One scene at the sizes that were given.
+  // One scene at the given sizes.
   std::vector<SceneOfReference> given_scenes() const {
-    if (scene.empty())
-      throw UsageError("--n and --set go with --scene: of which scene is the reference to be?");
+    if (scene.empty()) throw UsageError("--n and --set go with --scene");
     if (n.empty()) return {{name(), complete_parameters()}};
     std::vector<SceneOfReference> scenes;
     SceneOptions one = *this;
-    for (const double size : numbers_of("--n", n, Bounds::whole_number(1))) {
-      one.n = number_text(size, 10);
+    for (const double size : n) {
+      one.n = {size};
       scenes.emplace_back(name(), one.complete_parameters());
     }
     return scenes;
   }
 
-  // Those of a profile's sweeps.
+  // The scenes of a suite's sweeps.
   std::vector<SceneOfReference> scenes_of_suite() const {
     Suite suite = read_suite(suite_path(*this));
     std::erase_if(suite.sweeps, [this](const SweepSpec& s) {
@@ -66,7 +64,6 @@ struct ReferenceVerb : SelectionOptions {
     return scenes;
   }
 
-  // Makes what is missing, or all of it.
   int run() const {
     const bool one_scene = !n.empty() || !set.empty() || scene.starts_with("mesh:");  // of no suite
     const auto references = ReferenceFolder::usual();

@@ -1,4 +1,4 @@
-// What result files say, printed and drawn: bench show, budget, claims, results, report and plot.
+// bench show, budget, claims, results, report and plot: result files printed and drawn.
 #include <algorithm>
 #include <filesystem>
 #include <sstream>
@@ -32,7 +32,7 @@ std::vector<json> documents_of(const std::vector<NamedResult>& files, bool (*wan
 
 bool is_of_runs(const json& document) { return !is_answers(document); }
 
-// Several files are one table; a file of known answers is read by itself.
+// Several files become one table; a file of known answers cannot be joined with others.
 json read_as_one(const Words& files) {
   return files.size() == 1 ? read_result(files.front(), ResultKinds::all) : read_results(files);
 }
@@ -83,20 +83,21 @@ struct Show {
 
 struct Budget {
   Words files;
-  std::string ms = "1,4,16";
+  Numbers ms{1, 4, 16};
 
   void declare(const Command& command) {
     add_results(command, files, "result files");
-    command.option("--ms", ms, "milliseconds of one core for a frame of 1/60 s; default: " + ms,
-                   "MS,...");
+    command.option(
+        "--ms", ms,
+        "milliseconds of one core for a frame of 1/60 s, one or several; default: 1,4,16", "MS",
+        Bounds::positive());
   }
 
   int run() {
-    std::vector<double> seconds = numbers_of("--ms", ms, Bounds::positive());
-    for (double& budget : seconds) budget *= 1e-3;
+    for (double& budget : ms) budget *= 1e-3;  // s
     const auto sweeps = documents_of(read_all(files, ResultKinds::all), is_sweep);
     std::vector<analysis::BudgetTable> tables;
-    if (!sweeps.empty()) tables = analysis::budget_tables(joined(sweeps), seconds);
+    if (!sweeps.empty()) tables = analysis::budget_tables(joined(sweeps), ms);
     if (tables.empty())
       throw UsageError("'" + files.front() +
                        "' has no times of frames; sweeps of at least one second have them");
@@ -134,7 +135,7 @@ struct Claims {
   }
 };
 
-// What results and report have in common: result files, those of known answers by themselves too.
+// Options of results and report: result files, with those of known answers apart.
 struct PageOptions {
   Words results, answers;
   std::string out;
@@ -164,7 +165,7 @@ struct Results : PageOptions {
                    "RESULT.json ...");
   }
 
-  // The page begins with the command that makes it again.
+  // The page begins with the command that generates it.
   std::string page() const {
     std::ostringstream text;
     text
@@ -195,8 +196,8 @@ struct Results : PageOptions {
   }
 };
 
-// What the report says and draws: every file with its analysis, the verdicts on the claims, and the
-// findings of all sweeps, those of pieces of one sweep taken together.
+// Content of the report: every file with its analysis, the findings of all sweeps joined, and the
+// verdicts on the claims.
 json report_json(const std::vector<NamedResult>& files) {
   json results = json::array(), findings = results;
   for (const auto& [name, document] : files)

@@ -17,11 +17,10 @@ namespace {
 
 using nlohmann::json;
 
-// Larger scenes than any that has a reference: even a few steps of a slow route take long.
+// Beyond this, even a few steps of a slow reference route take too long to time.
 constexpr int most_timed_vertices = 20000;
 
-// Runs that look at the machine between them, and take disturbed samples again while the budget
-// lasts.
+// Probes the machine's noise between runs, and retakes disturbed samples while the budget lasts.
 SweepRunners watched(const SweepRunners& inner, NoiseProbe& noise_probe, bool timed) {
   const auto budget = std::make_shared<RetakeBudget>();
   return wrapped(inner,
@@ -69,8 +68,8 @@ struct SweepCommand : SweepOptions, OutputOptions {
   std::string shard_text;
   double memory = 0;  // bytes; 0: no limit
   bool dry_run = false, no_wait = false;
-  std::string hard_case;        // of --sweep stability
-  Command of_suites, of_cases;  // options that only one kind of sweep has
+  std::string hard_case;        // with --sweep stability
+  Command of_suites, of_cases;  // options of one kind of sweep only
 
   void declare(const Command& command) {
     of_suites = command.group("with --sweep strain, resolution and step");
@@ -120,12 +119,12 @@ struct SweepCommand : SweepOptions, OutputOptions {
               << " (bench reference makes them, in about " << duration_text(seconds) << ")\n";
   }
 
-  // With what chooses points beside the suite.
+  // Includes the options that choose points of the suite.
   json context_of_suite() const {
     json context = machine_context();
     context["selection"] = {
         {"solver", solver}, {"filter", filter}, {"exclude", exclude}, {"shard", shard_text}};
-    // No part of it may be taken up as timed.
+    // An untimed run must not be resumed as a timed one.
     if (untimed) context["selection"]["untimed"] = true;
     return context;
   }

@@ -1,4 +1,4 @@
-// bench tune: searches the settings of each solver, and writes what it found for suites to use.
+// bench tune: searches the settings of each solver and writes them to a file that suites use.
 #include <algorithm>
 #include <filesystem>
 #include <iomanip>
@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-// All that have something to be tuned; a solver that is no contestant only by name.
+// Solvers with tunable settings; one that is not a contestant must be named in full.
 std::vector<std::string> chosen_solvers(const std::string& text, const SweepSpec& scene) {
   std::vector<std::string> solvers;
   const Contestants all = competitors(*find_scene(scene.scene), scene.scene_parameters);
@@ -32,7 +32,7 @@ std::vector<std::string> chosen_solvers(const std::string& text, const SweepSpec
 
 using Entries = std::vector<TunedEntry>;
 
-// In the order of scenes and solvers, whatever was tuned first.
+// Sorted by scene and solver.
 void write_entries(const std::string& file, Entries& entries) {
   std::ranges::stable_sort(entries, {}, [kinds = scene_kinds()](const TunedEntry& entry) {
     return std::pair(std::ranges::find(kinds, entry.kind) - kinds.begin(),
@@ -41,7 +41,7 @@ void write_entries(const std::string& file, Entries& entries) {
   write_atomically(file, document_text(tuned_document(entries)));
 }
 
-// Instead of what was found there before.
+// Replaces earlier results at the same places.
 void add_places(TunedEntry& entry, const std::vector<TunedPlace>& found) {
   for (const TunedPlace& place : found) {
     std::erase_if(entry.places, [&](const TunedPlace& p) {
@@ -60,7 +60,8 @@ void print(const TunedEntry& entry) {
 }
 
 struct Tune {
-  std::string solver, scene, n, limits, out;
+  std::string solver, scene, out;
+  Numbers n, limits;
   int trials = 0;  // 0: the rule's
   double timeout = TuneOptions{}.timeout;
   bool no_wait = false, again = false;
@@ -69,15 +70,16 @@ struct Tune {
     add_solver(command, solver);
     command.option("--scene", scene,
                    "chain, drape, settling_drape, patch or spinning_net; default: all", "SCENE");
-    command.option("--n", n, "sizes of your own, whose settings are added", "N,...");
+    command.option("--n", n, "sizes of your own, whose settings are added", "N",
+                   Bounds::whole_number(2));
     command.option("--limit", limits, "strain limits of your own, whose settings are added",
-                   "STRAIN,...");
+                   "STRAIN", Bounds::strain());
     command.option("--trials", trials,
                    "sets of settings to try for each solver, size and limit; default: 10 for each "
                    "setting, at most 40",
                    "N", {.least = 4, .most = 10000, .whole = true});
     add_timeout(command, timeout, "10");
-    command.flag("--again", again, "also what is up to date");
+    command.flag("--again", again, "also tune what is up to date");
     command.option("--out", out, "the settings; default: configs/tuned.json", "FILE");
     add_no_wait(command, no_wait);
   }
@@ -94,15 +96,11 @@ struct Tune {
       std::erase_if(chosen, [this](const SweepSpec& s) { return s.scene != scene; });
     }
     if (!own_places()) return chosen;
-    if (chosen.size() != 1)
-      throw UsageError("--n and --limit go with --scene: of which scene is the place?");
+    if (chosen.size() != 1) throw UsageError("--n and --limit go with --scene");
     SweepSpec& one = chosen.front();
-    one.scene_parameters.clear();  // the scene that results report
-    if (!n.empty()) {
-      const std::vector<double> sizes = numbers_of("--n", n, Bounds::whole_number(2));
-      one.resolutions.assign(sizes.begin(), sizes.end());
-    }
-    if (!limits.empty()) one.limits = numbers_of("--limit", limits, Bounds::strain());
+    one.scene_parameters.clear();  // use the scene that results report
+    if (!n.empty()) one.resolutions.assign(n.begin(), n.end());
+    if (!limits.empty()) one.limits = limits;
     return chosen;
   }
 
@@ -116,7 +114,7 @@ struct Tune {
     return options;
   }
 
-  // Into `entries`; false: what is there is up to date.
+  // Stores the result in `entries`. False: its entry is up to date.
   bool tune_one(const SweepSpec& on, const std::string& name, const SweepRunners& runners,
                 Entries& entries) const {
     const auto known = std::ranges::find_if(entries, [&](const TunedEntry& entry) {
@@ -152,7 +150,7 @@ struct Tune {
     (void)solver_pattern(solver);
     if (std::ranges::all_of(
             chosen, [this](const SweepSpec& s) { return chosen_solvers(solver, s).empty(); }))
-      throw UsageError("--solver " + solver + ": no setting of it is to be tuned");
+      throw UsageError("--solver " + solver + ": it has no tunable settings");
     const std::string file = out.empty() ? source_path("configs/tuned.json") : out;
     Entries entries;
     if (std::filesystem::exists(file))

@@ -1,4 +1,4 @@
-// bench: the command line. CLI11 is included here only, because it takes ten seconds to compile.
+// bench: the command line. Only this file includes CLI11, which takes ten seconds to compile.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>
@@ -18,7 +18,7 @@ namespace harness {
 
 namespace {
 
-// A number that is one, and holds the bounds; said as everything else says it.
+// A number within bounds, with the message that files get too.
 CLI::Validator within(const Bounds& bounds) {
   return CLI::Validator(
       [bounds](const std::string& text) {
@@ -29,7 +29,7 @@ CLI::Validator within(const Bounds& bounds) {
       "");
 }
 
-// Names of version 0.2, which --solver takes for one more version.
+// --solver accepts solver names of version 0.2 for one more version.
 std::string renamed(std::string text) {
   for (const auto& [was, is] :
        {std::pair("strips", "yarn_projection"), std::pair("oracle", "dense_newton"),
@@ -56,10 +56,13 @@ void Command::option(const std::string& name, Place place, const std::string& he
                      const std::string& type, const Bounds& bounds) const {
   std::visit(
       [&](auto value) {
+        using Value = typename decltype(value)::type;
         CLI::Option* option =
             placed(app_->add_option(name == "--out" ? "-o,--out" : name, value.get(), help));
         option->type_name(type);
-        if constexpr (std::is_arithmetic_v<typename decltype(value)::type>)
+        if constexpr (std::is_same_v<Value, Numbers>)
+          option->delimiter(',')->allow_extra_args(false);
+        if constexpr (std::is_arithmetic_v<Value> || std::is_same_v<Value, Numbers>)
           option->check(within(bounds));
       },
       place);
@@ -78,7 +81,7 @@ void Command::alternatives(const std::string& name, std::string& value,
         std::replace(text.begin(), text.end(), ',', '|');
         return renamed(std::move(text));
       })
-      ->delimiter('|')  // they are joined by it again
+      ->delimiter('|')  // joins them again
       ->multi_option_policy(CLI::MultiOptionPolicy::Join);
 }
 
@@ -108,7 +111,7 @@ std::string Command::one_typed() const {
 
 namespace {
 
-// As a result records them: it is no place for a machine's folders.
+// For the record in a result, which must not name folders of this machine.
 Words recorded_words(int argc, char** argv) {
   Words words{"bench"};
   for (int i = 1; i < argc; ++i) {
@@ -118,7 +121,7 @@ Words recorded_words(int argc, char** argv) {
   return words;
 }
 
-// The words in the order of typing, without the program's name.
+// The typed words without the program's name; `help VERB` and `sweep AXIS` become options.
 Words usual_words(int argc, char** argv) {
   Words words(argv + std::min(argc, 1), argv + argc);
   if (words.empty()) return words;
@@ -139,7 +142,7 @@ const CLI::App* command_of(const CLI::App& program) {
   return typed.empty() ? &program : typed.front();
 }
 
-// What is wrong with the first of the typed words that CLI11 had no place for.
+// Explains the first typed word that CLI11 did not recognize.
 std::string not_understood(const CLI::App& program, const Words& typed) {
   const CLI::App* command = command_of(program);
   const Words left = program.remaining(true);
@@ -204,7 +207,7 @@ int failed(const std::string& why, ExitCode code) {
   return code;
 }
 
-// What goes wrong is said in a line on stderr, and is an exit code.
+// Turns exceptions into a line on stderr and an exit code.
 int guarded(const std::function<int()>& work) {
   try {
     const int code = work();
@@ -228,8 +231,7 @@ int guarded(const std::function<int()>& work) {
   }
 }
 
-// An exit code if nothing is left to do: help was printed, or a word is wrong, which is said on
-// stderr.
+// An exit code if nothing is left to do: help was printed, or an error was reported.
 std::optional<int> parse(CLI::App& program, const Words& words) {
   const auto refused = [&program](const std::string& why) {
     const CLI::App* command = command_of(program);
@@ -244,7 +246,7 @@ std::optional<int> parse(CLI::App& program, const Words& words) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0) return refused(error.what());
     const bool no_verb = !words.front().starts_with('-') && program.get_subcommands().empty();
-    if (no_verb) return refused(not_understood(program, words));  // help of what is not there
+    if (no_verb) return refused(not_understood(program, words));  // help for an unknown command
     return program.exit(error);                                   // --help, --version
   }
   return std::nullopt;
@@ -253,7 +255,7 @@ std::optional<int> parse(CLI::App& program, const Words& words) {
 int run(int argc, char** argv) {
   CLI::App program(description, "bench");
   program.set_version_flag("-V,--version", version_text);
-  program.require_subcommand(0, 1);  // a word after a verb is never another verb: list answers
+  program.require_subcommand(0, 1);  // "answers" in `list answers` is not a verb
   std::map<const CLI::App*, std::pair<Action, bool>> actions;  // and Verb::has_children
   Words plugins;
   for (const Verb& verb : verbs()) {

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <limits>
-#include <sstream>
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
@@ -19,8 +18,8 @@ using nlohmann::json;
 void SceneOptions::declare(const Command& to, const std::string& standard) {
   to.option("--scene", scene, "one of `bench list scenes`, or mesh:FILE.obj; default: " + standard,
             "SCENE");
-  to.option("--n", n, "size of the scene; a resolution sweep takes several, e.g. 20,40,80",
-            "N,...");
+  to.option("--n", n, "size of the scene; a resolution sweep takes several, e.g. 20,40,80", "N",
+            Bounds::whole_number(2));
   to.repeatable("--set", set, "a parameter of the scene; repeatable", "NAME=NUMBER");
   to.option("--pins", pins,
             "of mesh:FILE.obj: which vertices are pinned, e.g. 'y > 1.2' or 'y > 1.2 and x < 0'",
@@ -46,18 +45,18 @@ SceneParameters SceneOptions::given_parameters() const {
 SceneParameters SceneOptions::complete_parameters() const {
   const auto type = checked_scene(name());
   SceneParameters parameters = given_parameters();
-  if (!n.empty()) parameters[type->resolution] = one_number_of("--n", n, Bounds::whole_number(2));
+  if (n.size() > 1) throw UsageError("--n: one scene has one size");
+  if (!n.empty()) parameters[type->resolution] = n.front();
   return harness::complete_parameters(*type, parameters);
 }
 
-void SelectionOptions::declare_scenes(const Command& to, const Command& of_suites) {
+void SweepOptions::declare_scenes(const Command& to, const Command& of_suites) {
   to.option("--sweep", sweep, "axis: strain (limit), resolution, step or stability", "AXIS");
-  add_profile(to, profile);
+  add_suite(to, of_suites, profile, config);
   SceneOptions::declare(of_suites, "all of the suite's");
-  add_config(of_suites, config);
 }
 
-void SelectionOptions::declare(const Command& to, const Command& of_suites) {
+void SweepOptions::declare_selection(const Command& to, const Command& of_suites) {
   declare_scenes(to, of_suites);
   add_solver(to, solver);
   add_limits(of_suites, limits, "the suite's");
@@ -65,8 +64,8 @@ void SelectionOptions::declare(const Command& to, const Command& of_suites) {
 }
 
 void SweepOptions::declare(const Command& to, const Command& of_suites) {
-  SelectionOptions::declare(to, of_suites);
-  add_seed(to, seed, "of random orders");
+  declare_selection(to, of_suites);
+  to.option("--seed", seed, "of random orders", "N", Bounds::exact_number());
   of_suites.option("--reps", reps, "samples of each point that may be best", "N",
                    Bounds::whole_number(1));
   add_timeout(of_suites, timeout, "the suite's");
@@ -77,12 +76,10 @@ void SweepOptions::declare(const Command& to, const Command& of_suites) {
   of_suites.option("--finest", finest, "smallest step of the ladder instead of the suite's", "S",
                    Bounds::positive());
   of_suites.option("--finest-error", finest_error,
-                   "search best steps for levels of error down to this one, over the scene's size, "
-                   "instead of the suite's",
+                   "finest level of error, over the scene's size, that best steps are searched for",
                    "E", Bounds::positive());
   of_suites.flag("--untimed", untimed,
-                 "for counters and errors only: run at once, beside programs that take times; the "
-                 "result is refused wherever times are read");
+                 "for counters and errors only: runs beside other programs; its times are refused");
 }
 
 void add_results(const Command& to, Words& files, const std::string& help) {
@@ -93,13 +90,13 @@ void add_results(const Command& to, Words& files, const std::string& help) {
 void add_solver(const Command& to, std::string& solver) {
   to.alternatives(
       "--solver", solver,
-      "only contestants whose whole name matches, e.g. shake,icd or 'yarn_projection.*'; "
-      "repeatable");
+      "contestants whose whole name matches, e.g. shake,icd or 'yarn_projection.*'; repeatable");
 }
 
-void add_limits(const Command& to, std::string& limits, const std::string& standard) {
+void add_limits(const Command& to, Numbers& limits, const std::string& standard) {
   to.option("--limit", limits,
-            "strain limit, one or several, e.g. 0.01,0.001; default: " + standard, "STRAIN,...");
+            "strain limit, one or several, e.g. 0.01,0.001; default: " + standard, "STRAIN",
+            Bounds::strain());
 }
 
 void add_filters(const Command& to, std::string& filter, std::string& exclude) {
@@ -107,21 +104,15 @@ void add_filters(const Command& to, std::string& filter, std::string& exclude) {
   to.option("--exclude", exclude, "without points whose id contains a match", "REGEX");
 }
 
-void add_profile(const Command& to, std::string& profile) {
+void add_suite(const Command& to, const Command& of_suites, std::string& profile,
+               std::string& config) {
   to.option("--profile", profile, "one of `bench list suites`; default: " + profile, "NAME");
-}
-
-void add_config(const Command& to, std::string& config) {
-  to.option("--config", config, "a suite of your own instead of a profile", "FILE");
+  of_suites.option("--config", config, "a suite of your own instead of a profile", "FILE");
 }
 
 void add_timeout(const Command& to, double& timeout, const std::string& standard) {
   to.option("--timeout", timeout, "seconds a run may take; default: " + standard, "S",
             Bounds::positive());
-}
-
-void add_seed(const Command& to, std::int64_t& seed, const std::string& help) {
-  to.option("--seed", seed, help, "N", Bounds::exact_number());
 }
 
 void add_no_wait(const Command& to, bool& no_wait) {
@@ -151,41 +142,11 @@ std::optional<Pattern> pattern_of(const std::string& option, const std::string& 
   return text.empty() ? std::nullopt : std::optional(Pattern(option, text));
 }
 
-std::vector<double> numbers_of(const std::string& option, const std::string& text,
-                               const Bounds& bounds) {
-  std::vector<double> numbers;
-  std::istringstream list(text + ',');  // so that nothing behind the last comma is an item as well
-  for (std::string item; std::getline(list, item, ',');) {
-    const auto number = number_in(item);
-    if (!number || !bounds.hold(*number))
-      throw UsageError(option + " is '" + shortened(text) + "': '" + shortened(item, 20) +
-                       "' must be " + bounds.text());
-    numbers.push_back(*number);
-  }
-  return numbers;
-}
-
-double one_number_of(const std::string& option, const std::string& text, const Bounds& bounds) {
-  const std::vector<double> numbers = numbers_of(option, text, bounds);
-  if (numbers.size() != 1) throw UsageError(option + " is '" + text + "', must be one number");
-  return numbers.front();
-}
-
-// ---- The suite that a sweep runs: a profile's or one's own, with what the options say instead
-// ----
+// ---- The suite that a sweep runs: a profile's or one's own, as the options change it ----
 
 namespace {
 
-void check_longest_step(const Suite& suite) {
-  for (const SweepSpec& sweep : suite.sweeps) {
-    if (sweep.coarsest > longest_step * (1 + 1e-9))
-      throw UsageError("the ladder of " + sweep.scene + " begins at " +
-                       number_text(sweep.coarsest) +
-                       " s ('steps': 'coarsest'), must be a frame, 1/24 s, at most");
-  }
-}
-
-// For all sweeps a ladder that ends earlier or later.
+// Ends the step ladders of all sweeps at `finest`.
 void cut_ladders(Suite& suite, double finest) {
   for (SweepSpec& sweep : suite.sweeps) {
     if (sweep.adaptive)
@@ -201,8 +162,7 @@ bool is(const json& sweep, const char* key, const std::string& value) {
   return sweep.is_object() && sweep.value(key, json()) == value;
 }
 
-// A scene that the suite has not takes the place of its first sweep of that kind, at the size that
-// the scene has by itself.
+// A scene missing from the suite gets a copy of the first sweep of that kind, at its default size.
 void put_in_scene(json& sweeps, const SweepOptions& options) {
   const auto of_kind = [&](const json& s) { return is(s, "sweep", options.sweep); };
   if (options.scene.empty() || std::ranges::any_of(sweeps, [&](const json& s) {
@@ -220,15 +180,14 @@ void put_in_scene(json& sweeps, const SweepOptions& options) {
   sweeps.push_back(std::move(sweep));
 }
 
-// The suite with what the options say instead: it then is one like any other, checked as a whole.
+// The suite as the options change it, checked like any other.
 Suite edited_suite(const std::string& path, const SweepOptions& options) {
   const std::string text = read_file(path, "suite");
   const SceneParameters given = options.given_parameters();
-  if (!given.empty() && options.scene.empty())
-    throw UsageError("--set goes with --scene: of which scene is the parameter?");
+  if (!given.empty() && options.scene.empty()) throw UsageError("--set goes with --scene");
   json document = parse_commented(text, path);
   if (!document.is_object() || !document.contains("sweeps") || !document["sweeps"].is_array())
-    return parse_suite(text, path);  // which says what is wrong
+    return parse_suite(text, path);  // which reports what is wrong
   json& sweeps = document["sweeps"];
   put_in_scene(sweeps, options);
   for (json& sweep : sweeps) {
@@ -237,27 +196,25 @@ Suite edited_suite(const std::string& path, const SweepOptions& options) {
       for (const auto& [name, value] : given) sweep["scene_parameters"][name] = value;
     }
     if (!options.limits.empty()) {
-      const json limits = numbers_of("--limit", options.limits, Bounds::strain());
-      if (options.sweep == "resolution" && limits.size() > 1)
+      if (options.sweep == "resolution" && options.limits.size() > 1)
         throw UsageError("--limit: a resolution sweep has one");
       sweep.erase("limit");
-      sweep["limits"] = limits;
+      sweep["limits"] = options.limits;
     }
     if (options.n.empty()) continue;
-    const json sizes = numbers_of("--n", options.n, Bounds::whole_number(2));
-    if (options.sweep != "resolution" && sizes.size() > 1)
+    if (options.sweep != "resolution" && options.n.size() > 1)
       throw UsageError("--n: a " + options.sweep + " sweep has one size");
     const auto type = find_scene(sweep.value("scene", ""));
     if (type && sweep.contains("scene_parameters"))
       sweep["scene_parameters"].erase(type->resolution);
-    sweep["resolutions"] = sizes;
+    sweep["resolutions"] = options.n;
   }
   return parse_suite(document.dump(), path);
 }
 
 }  // namespace
 
-std::string suite_path(const SelectionOptions& options) {
+std::string suite_path(const SweepOptions& options) {
   if (!options.scene.empty()) (void)checked_scene(options.scene);
   if (!options.config.empty()) return options.config;
   check_known("profile", options.profile, profiles());
@@ -280,12 +237,11 @@ Suite load_suite(const SweepOptions& given) {
     throw UsageError("'" + path + "' has no such sweep: --sweep " + options.sweep + " --scene " +
                      options.scene);
   check_known("choice of steps", options.steps, {"search", "adaptive", "all"});
-  check_longest_step(suite);
   if (options.steps == "adaptive") {
     if (options.sweep == "step")
       throw UsageError("--steps adaptive does not go with --sweep step, whose steps are fixed");
     for (SweepSpec& sweep : suite.sweeps) sweep.adaptive = true;
-    suite.name += "-adaptive";  // files and figures of their own
+    suite.name += "-adaptive";  // separate files and figures
   } else if (options.steps == "all" && options.sweep != "step") {
     for (SweepSpec& sweep : suite.sweeps) sweep.every_step = true;
     suite.name += "-all";
@@ -293,11 +249,11 @@ Suite load_suite(const SweepOptions& given) {
   if (options.reps > 0) suite.reps = options.reps;
   if (options.finest > 0) cut_ladders(suite, options.finest);
   if (options.timeout > 0) suite.timeout = options.timeout;
-  // Where times mean nothing, no run is stopped for being slower than another contestant's.
+  // Meaningless times must not stop a run for being slower than another contestant's.
   if (options.untimed) suite.far_behind = std::numeric_limits<double>::infinity();
   if (options.finest_error > 0) suite.finest_error = options.finest_error;
   if (options.seed >= 0) suite.seed = static_cast<std::uint64_t>(options.seed);
-  // A solver that is no contestant joins when it is asked for by its own name.
+  // A solver that is not a contestant takes part only if named in full.
   if (const auto* backend = inextensible::find_backend(options.solver);
       backend && !backend->contestant) {
     for (SweepSpec& sweep : suite.sweeps) sweep.contestants = {{options.solver, options.solver}};
@@ -307,7 +263,7 @@ Suite load_suite(const SweepOptions& given) {
   return suite;
 }
 
-SweepFilters filters_of(const SelectionOptions& options) {
+SweepFilters filters_of(const SweepOptions& options) {
   return {pattern_of("--solver", options.solver), pattern_of("--filter", options.filter),
           pattern_of("--exclude", options.exclude)};
 }

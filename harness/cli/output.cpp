@@ -44,8 +44,8 @@ void check_same(const OutputOptions& options, const std::string& path, const jso
                      "; --resume --force continues nevertheless");
 }
 
-// The context of the run that this one continues, or null. None: there is a whole result, so there
-// is nothing to do, and the journal is untouched.
+// The context of the run that this one continues, or null. None: the result is complete already,
+// and the journal is untouched.
 std::optional<json> begin_journal(const OutputOptions& options, const std::string& out,
                                   Journal& journal, const Undertaking& run) {
   const auto identity_of = [](const json& context, const json& suite) {
@@ -89,7 +89,7 @@ std::optional<json> begin_journal(const OutputOptions& options, const std::strin
   return json();
 }
 
-// A part of a result takes no place but that of another part.
+// A partial result replaces only another partial result.
 bool takes_a_part(const std::string& out) {
   if (!exists(out)) return true;
   std::ifstream file(out);
@@ -119,7 +119,8 @@ void Progress::show(double fraction, const std::string& head, const std::string&
   constexpr std::size_t cells = 12;
   const auto filled = std::min(static_cast<std::size_t>(fraction * cells), cells);
   line = "[" + std::string(filled, '#') + std::string(cells - filled, '.') + "] " + line;
-  line.resize(std::min(line.size(), output_columns(STDERR_FILENO) - 1));  // a full one scrolls
+  line.resize(
+      std::min(line.size(), output_columns(STDERR_FILENO) - 1));  // a full line would scroll
   clear();
   width_ = line.size();
   std::cerr << line << std::flush;
@@ -153,8 +154,7 @@ void OutputOptions::declare(const Command& to, const std::string& standard) {
   to.option("--out", out, "result file; default: results/local/" + standard, "FILE");
   to.flag("--resume", resume, "continue an interrupted run of the same --out");
   to.flag("--force", force,
-          "replace a result or an interrupted run; with --resume: continue a run of another build "
-          "or suite");
+          "replace an old result or run; with --resume: continue that of another build or suite");
   to.flag("--no-plots", no_plots, "draw no figures");
 }
 
@@ -182,7 +182,7 @@ int carry_out(const OutputOptions& options, const Undertaking& undertaking) {
   try {
     done = undertaking.run(journal, *before);
   } catch (const UsageError&) {
-    if (undertaking.count(journal) == 0) journal.remove();  // refused: nothing has come of it
+    if (undertaking.count(journal) == 0) journal.remove();  // refused before any result
     throw;
   }
   const bool written = !done.document.is_null() && (done.complete || takes_a_part(out));

@@ -42,7 +42,8 @@ void read_scene_parameters(JsonReader& reader, const SceneType& type, SweepSpec&
 void read_steps(JsonReader& reader, const std::string& where, SweepSpec& spec) {
   if (const json* steps = reader.find("steps")) {
     JsonReader ladder(*steps, where + ": 'steps'");
-    spec.coarsest = ladder.number("coarsest", spec.coarsest, Bounds::positive());
+    const Bounds within_a_frame{.least = 0, .above = true, .most = longest_step * (1 + 1e-9)};
+    spec.coarsest = ladder.number("coarsest", spec.coarsest, within_a_frame);
     spec.finest = ladder.number("finest", spec.finest, Bounds::positive());
     spec.adaptive = ladder.flag("adaptive", spec.adaptive);
     spec.every_step = ladder.flag("all", spec.every_step);

@@ -23,10 +23,9 @@ did you mean 'strain' <- --sweep strian --out out.json
 no point is left <- SWEEP --filter nothing
 no case matches <- --sweep stability --case nothing --out out.json
 --filter goes with --sweep strain, resolution and step only (--case chooses <- --sweep stability --filter x --out out.json
---reps <- SWEEP --reps 0
 must be i/N <- SWEEP --shard 2
 i must be from 1 to N <- SWEEP --shard 3/2
-'' must be a number above 0 and below 1 <- SWEEP --limit 0.01,
+is '1', must be a number above 0 and below 1 <- SWEEP --limit 0.01,1
 --memory <- SWEEP --memory much
 is 'nan', must be a number above 0 <- SWEEP --timeout nan
 has one size <- SWEEP --n 10,20
@@ -49,7 +48,6 @@ cannot read the result file 'folder': it is a folder <- show folder
 'dangling.json': it is a link to 'nowhere.json', which does not exist <- show dangling.json
 cannot read the result file 'empty.json': it is empty <- show empty.json
 must be 24, 30 or 60 <- choose --fps 50
---budget <- choose --budget 2ms
 TABLE
 [[ ! -e nowhere ]] || fail "a refused --out made its folder"
 for document in '{"schema": "inextensible-bench/1"}' "$(head -c 100000 /dev/zero | tr '\0' '[')" '{"schema": 1, "schema": 2}' '[]'; do
@@ -61,7 +59,7 @@ done
 
 # ---- Sweeps ----
 sweep=(--sweep strain --profile quick --no-plots --reps 1 --solver '^fast_projection$')
-# A step sweep: an error and a sample in every point; the file, which claims are judged from, has no folder of this machine.
+# A step sweep: every point has an error and a sample; the file, which claims are judged from, names no folder of this machine.
 makes "$PWD/steps.json" --sweep step --profile quick --scene chain --solver 'rattle|^fast_projection$' --filter 'strain:0.0001/' --reps 1 --no-plots
 holds '
 document = read("steps.json")
@@ -79,7 +77,7 @@ holds '
 points = read("adaptive.json")["points"]
 assert all(p["id"].endswith("h:adaptive") and p["status"] == "ok" for p in points)
 assert any(p["work"]["rejected_steps"] > 0 and p["smallest_step"] < p["step"] for p in points)'
-makes patch.json "${sweep[@]}" --scene patch --n 5 --limit 0.1,0.05  # which the suite has not
+makes patch.json "${sweep[@]}" --scene patch --n 5 --limit 0.1,0.05  # not in the suite
 holds 'assert {(p["scene"], p["vertices"], p["strain_limit"]) for p in read("patch.json")["points"]} == {("patch", 25, 0.1), ("patch", 25, 0.05)}'
 
 # Google Benchmark's compare.py sets two solvers of one file against each other: rows match, and with nine runs its U test runs.
@@ -98,7 +96,7 @@ cp old.json kept.json
 "$BENCH_BINARY" --sweep strain --profile paper --scene drape --solver gauss_seidel --out old.json --no-plots --force >/dev/null 2>&1 &
 pid=$!
 for _ in $(seq 3000); do [[ -s old.json.journal && $(wc -l <old.json.journal) -gt 1 ]] && break; sleep 0.01; done
-# Meanwhile nobody else takes times; who takes none need not wait, and nothing reads its times.
+# Meanwhile other timed runs are refused; an untimed one need not wait, and its times are refused.
 refused "process $pid is taking times" "${one[@]}" --out out.json --no-wait
 refused "process $pid is taking times" tune --scene chain --out out.json --no-wait
 makes untimed.json "${one[@]}" --untimed
@@ -113,7 +111,7 @@ wait $waiting && [[ -s waited.json ]] || fail "a run that had to wait"
 cmp -s old.json kept.json || fail "an interrupted run took the place of a whole result"
 holds 'assert len(open("old.json.journal").readlines()) > 1'
 
-# ---- A finished result is not replaced without a word ----
+# ---- A finished result is not replaced without --force ----
 rm old.json.journal
 bench "${tiny[@]}" --out old.json >/dev/null 2>err.txt
 [[ $? == 2 ]] && grep -q "exists: --force replaces it" err.txt && cmp -s old.json kept.json || fail "a finished result: $(cat err.txt)"
@@ -121,7 +119,7 @@ makes old.json "${tiny[@]}" --force
 cmp -s old.json kept.json && fail "--force did not replace it"
 
 # ---- Other verbs ----
-# Which solver to take: what it says keeps strain and error, and follows from no file.
+# The recommended solver keeps strain and error.
 bench choose --scene chain --n 20 --limit 0.01 --error 0.05 --solver 'rattle|fast_projection' --seconds 20 >choice.txt 2>/dev/null || fail "choose"
 holds '
 import re
@@ -129,7 +127,7 @@ text = open("choice.txt").read()
 take = re.search(r"^take  (rattle|fast_projection) at 1/(\S+) s .*: (\S+) ms a frame, 99 % below (\S+), worst (\S+); strain (\S+) %, error (\S+) %", text, re.M)
 rate, median, p99, worst, strain, error = (float(number) for number in take.groups()[1:])
 assert strain <= 1 and error <= 5 and rate >= 60 and 0 < median <= p99 <= worst, text'
-# Cloth of one's own, without a body: there is no reference, so a quick one takes its place.
+# A user's cloth without a body has no reference, so a quick one is computed.
 holds '
 n = 7
 with open("curtain.obj", "w") as file:
@@ -138,20 +136,20 @@ with open("curtain.obj", "w") as file:
 bench choose --scene mesh:curtain.obj --pins 'y > 0.99 and x < 0.02' --solver 'yarn_projection|fast_projection' --seconds 20 \
   >chosen.txt 2>err.txt || fail "choose for a mesh: exit $?, $(tail -1 err.txt)"
 grep -q '^curtain.obj, 49 vertices' chosen.txt && grep -q '^take  .* error [0-9.e-]* %' chosen.txt || fail "choose for a mesh: $(cat chosen.txt)"
-# Its reference is named after the content of the file, wherever that lies, and lies beside the user's results.
+# Its reference is named after the file's content, not its path, and is stored with the user's results.
 place=$(bench reference --scene mesh:curtain.obj --pins 'y > 0.99 and x < 0.02' --set duration=0.08 --finest 0.0005 2>err.txt | tail -1)
 [[ $place == */references/mesh-* && -s $place ]] || fail "the reference of a mesh: '$place', $(tail -1 err.txt)"
 mkdir elsewhere && cp curtain.obj elsewhere/other.obj
 bench reference --scene mesh:elsewhere/other.obj --pins 'y > 0.99 and x < 0.02' --set duration=0.08 | grep -q 'nothing is missing' ||
   fail "the same file under another name"
 rm -f "$place"
-# Without the time for any run, and with a budget that cannot be kept, nothing is to be taken; a solver that is named is tried.
+# Without time for a run, or with an impossible budget, nothing is recommended; a solver named in full is tried.
 exits 6 'no run ended within its strain limit in this time' choose --no-wait --scene drape --n 71 --seconds 0.5
 exits 6 'no solver that was tried keeps the budget' choose --no-wait --scene chain --n 10 --error 0.5 --seconds 10 \
   --solver 'fast_projection|yarn_projection@midpoint' --budget 1e-9
 ! grep -q '^take' stdout.txt && grep -q fast_projection stdout.txt && grep -q yarn_projection@midpoint stdout.txt ||
   fail "a budget that cannot be kept: $(cat stdout.txt)"
-# Settings are searched and put among those of other solvers.
+# Settings are searched and stored beside those of other solvers.
 cp "$root/configs/tuned.json" before.json
 cp before.json tuned.json
 makes tuned.json tune --scene chain --solver icd --again --trials 4 --timeout 30
@@ -161,7 +159,7 @@ found = after[("chain", "icd")]
 assert found["budget"] == 4 and all(0 < p["evaluations"] <= 4 for p in found["places"]), found
 assert {p["resolution"] for p in found["places"]} <= {50, 200, 25, 12} and found["places"], found
 assert len(before) > 10 and {**before, ("chain", "icd"): found} == after, before.keys() ^ after.keys()'
-# Known answers: show says what the program said.
+# Known answers can be shown.
 makes known.json answers --answer net_place --solver '^fast_projection$' --no-plots
 bench show known.json | grep -q '^net_place' || fail "show of known answers names nothing"
 
@@ -174,21 +172,14 @@ bench list >&- 2>err.txt
 [[ $? == 1 ]] || fail "a closed standard output goes unnoticed"
 bench "${tiny[@]}" --out=-dash.json >/dev/null 2>&1 && [[ -f ./-dash.json ]] || fail "a name that begins with -"
 
-# ---- Hard cases go on where they were ----
+# ---- Hard cases: a partial result is completed without its journal, and shards are the whole (kill -9: loses_nothing_test.sh) ----
 cases=(--sweep stability --case 'Q[1-4]' --solver 'icd|^fast_projection$|shake' --no-plots)
 makes whole.json "${cases[@]}"
-"$BENCH_BINARY" "${cases[@]}" --out cut.json >/dev/null 2>&1 &
-for _ in $(seq 500); do [[ -e cut.json.journal && $(wc -l <cut.json.journal) -ge 3 ]] && break; sleep 0.01; done
-kill -KILL $! 2>/dev/null
-wait $! 2>/dev/null
-[[ ! -e cut.json.journal ]] || refused "--resume continues it" "${cases[@]}" --out cut.json
-makes cut.json "${cases[@]}" --resume
-# ... and a result that an interrupt left goes on too, without its journal.
 holds 'd = read("whole.json"); d["complete"] = False; d["matrix"] = d["matrix"][:3]; json.dump(d, open("part.json", "w"))'
 makes part.json "${cases[@]}" --resume
 for i in 1 2 3; do makes "shard$i.json" "${cases[@]}" --shard "$i/3"; done
 bench show shard1.json shard3.json | grep -q "a shard is missing" || fail "a missing shard of hard cases"
-for files in cut.json part.json "shard1.json shard2.json shard3.json"; do
+for files in part.json "shard1.json shard2.json shard3.json"; do
   diff <(bench show whole.json | tail -n +2) <(bench show $files | tail -n +2) || fail "$files: not the whole"
 done
 

@@ -8,7 +8,7 @@
 bench --sweep strain --scene chain --n 5 --limit 0.1 --solver shake,jacobi --reps 1 --no-plots --out given.json >/dev/null 2>&1 ||
   fail "no result to begin with"
 
-# whole FILE: it is complete, as its format has it.
+# whole FILE: it is complete according to its format.
 whole() {
   case $1 in
     *.json) /usr/bin/python3 -c 'import json, sys; sys.exit(not json.load(open(sys.argv[1])).get("complete", True))' "$1" ;;
@@ -18,7 +18,7 @@ whole() {
   esac
 }
 
-# a_process_is_left WORD: of this test's; others that run beside it use the same program.
+# a_process_is_left WORD: of this test; other tests may run the same program.
 a_process_is_left() {
   local pid
   for pid in $(pgrep -f -- "$BENCH_BINARY $1"); do [[ ! /proc/$pid/cwd -ef . ]] || return 0; done

@@ -1,6 +1,6 @@
-// Preloaded (LD_PRELOAD), it strikes at the n-th change that a program or its children make to
-// regular files. FAULT=kill ends the process there; FAULT=full lets the disk be full from there on.
-// FAULT_AT is n. FAULT_MARK names a file that exists once it has struck.
+// Preloaded (LD_PRELOAD), it strikes at the n-th change (FAULT_AT) that a program or its children
+// make to regular files: FAULT=kill kills the process, FAULT=full fills the disk from there on.
+// FAULT_MARK names a file that exists once it has struck.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/mman.h>

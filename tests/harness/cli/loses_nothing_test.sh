@@ -3,7 +3,7 @@
 # output, a journal of something else. Points that crash are in execute_test.cpp.
 . "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/functions.sh"
 
-# What is run is the same whatever the times are.
+# The set of runs does not depend on times.
 cat >suite.json <<'JSON'
 {"name": "small", "reps": 2, "timeout": 20, "sweeps": [
   {"sweep": "strain", "scene": "chain", "limits": [0.1, 0.01], "scene_parameters": {"n": 20},
@@ -13,7 +13,7 @@ cat >suite.json <<'JSON'
 JSON
 sweep=(--sweep strain --config suite.json --no-plots)
 
-# same A B: the points of two results but for times, and which of them was fastest.
+# same A B: two results agree in all but times and which point was fastest.
 same() {
   python3 - "$1" "$2" <<'PYTHON'
 import json, sys
@@ -33,8 +33,8 @@ assert len(a) == len(b), (len(a), len(b))
 PYTHON
 }
 
-# hold RESULT LINES [OPTION...]: a run in the background ($!), stopped by SIGSTOP in its middle, once its journal has so
-# many lines. A busy machine may let a run finish unseen: then again. What is done to a held run meets it where it stands.
+# hold RESULT LINES [OPTION...]: a run in the background ($!), stopped by SIGSTOP once its journal has so many lines. Tries again
+# if the run finishes unseen on a busy machine.
 hold() {
   for _ in $(seq 20); do
     "$BENCH_BINARY" "${sweep[@]}" "${@:3}" --out "$1" >/dev/null 2>err.txt &
@@ -47,7 +47,7 @@ hold() {
   fail "no run was seen at $2 lines"
 }
 
-# let_go SIGNAL: sends it to the held run, lets that go on and waits for it; its exit code.
+# let_go SIGNAL: sends it to the held run, continues and awaits that, and returns its exit code.
 let_go() {
   kill "-$1" "$!"
   kill -CONT "$!" 2>/dev/null

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Terminal, page of results, report and figures give one answer, in the same words: that of times which are planted in a result file.
+# Terminal, page of results, report and figures agree, in the same words, on times planted in a result file.
 . "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/functions.sh"
 
 root=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../../..

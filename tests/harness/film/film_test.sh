@@ -21,7 +21,7 @@ refused "must be wider than the waist" film --scene garment --set rim=0.1 --out 
 refused "takes no collider" film --scene garment --set n=12 --solver soft_step --out out.png
 refused "must end in .png" film --stills 0.1 --out out.webp
 refused "has no pictures" film --width 100 --out out.obj
-refused "'x' must be a number of at least 0" film --stills 0.1,x --out out.png
+refused "is 'x', must be a number of at least 0" film --stills 0.1,x --out out.png
 
 # Pictures, under a name of their own where none is given: by an installed program, which writes below the current folder.
 mkdir -p installed/bin installed/share/inextensible
