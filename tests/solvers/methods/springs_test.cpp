@@ -201,28 +201,6 @@ TEST(PbdSubsteps, LeaveAHangingRopeTheStrainOfTheory) {
   }
 }
 
-// The way along edges, here around a corner of a net.
-TEST(PbdSubsteps, AttachmentsFollowEdgesOrGoStraight) {
-  Positions rest(3, 4);
-  rest << 0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0;
-  const Problem square(
-      testing::parts_at_rest(rest, {{0, 1}, {1, 3}, {0, 2}, {2, 3}}, {1, 1, 1, 1}, {0}));
-  const State start{rest, 0 * rest, 0};
-  for (const auto& [kind, distance] :
-       {std::pair<const char*, double>{"edges", 2}, {"straight", std::sqrt(2.0)}}) {
-    const Settings settings{{"attachments", std::string(kind)}};
-    const auto filter =
-        make_velocity_filter("pbd_substeps", square, {.settings = settings, .start = &start});
-    Positions x = 1000 * rest;
-    WorkCounters work;
-    ASSERT_TRUE(filter->apply(rest, 0.01, x, work));
-    EXPECT_NEAR(x.col(3).norm(), distance, 1e-9) << kind;
-  }
-  EXPECT_THROW(make_velocity_filter("pbd_substeps", square,
-                                    {.settings = {{"attachments", std::string("straight")}}}),
-               std::invalid_argument);
-}
-
 // At rest the impulses are the loads, and what is soft in them leaves link k longer by
 // load / (m_k omega^2), omega = 2 pi frequency / h, m_k = 1 / (w_a + w_b).
 TEST(SoftStep, LeavesAHangingRopeTheElongationOfItsSprings) {
