@@ -95,9 +95,7 @@ ImplicitSprings::ImplicitSprings(std::shared_ptr<const Problem> shared,
       max_iterations_(options.count("max_iterations")),
       step_tolerance_(options.number("newton_tolerance") * options.strain_limit *
                       problem().shortest_rest_length()),
-      reuse_below_(options.number("reuse") * step_tolerance_),
-      extrapolates_(options.word("start") == "extrapolated"),
-      predicts_tension_(options.word("tension") == "linearized") {
+      reuse_below_(options.number("reuse") * step_tolerance_) {
   const Problem& p = problem();
   if (step_tolerance_ == 0) step_tolerance_ = 1e-12;  // no edge says what is small: rounding
   for (Positions* x : {&inertial_, &trial_, &ahead_, &v_before_}) x->resize(3, p.vertices());
@@ -169,8 +167,7 @@ void ImplicitSprings::assemble(const Positions& x, double h, bool matrix) {
     if (s.fb >= 0) push(s.fb, pull);
     if (!matrix) continue;
     // The projected transverse stiffness.
-    const double transverse =
-        std::clamp(predicts_tension_ ? h * h * pull_[k] : pull, 0.0, stiffness);
+    const double transverse = std::clamp(h * h * pull_[k], 0.0, stiffness);
     add_block(s, {dx, dy, dz}, (stiffness - transverse) * (inverse_length * inverse_length),
               transverse);
   }
@@ -261,16 +258,8 @@ Backend implicit_springs_row() {
            {"newton_tolerance", 0.1, "last Newton step, in strain limit times shortest rest length",
             positive, SearchRange{0.01, 10}},
            // Instructions at 1 % strain and 1/100 s, plain Newton = 1, on the chain of 80 and the
-           // drape of 21 x 21: start and tension take 0.66 and 0.77, with reuse 0.59 and 0.55. A
-           // reuse of 30 takes 0.55 and 0.53 but ends steps less exactly on the chain.
-           word_setting("start", "extrapolated",
-                        "where Newton starts: at the lowest of free flight, last positions and "
-                        "their extrapolation to second order, or of the first two",
-                        {"extrapolated", "flight"}),
-           word_setting("tension", "linearized",
-                        "which tension stiffens the Hessian across a spring: that of the last "
-                        "linearization, or of the positions",
-                        {"linearized", "current"}),
+           // drape of 21 x 21: 0.66 and 0.77 without reuse, 0.59 and 0.55 with 10. A reuse of 30
+           // takes 0.55 and 0.53 but ends steps less exactly on the chain.
            {"reuse", 10.0,
             "a Newton step below this many tolerances keeps its factorization for the next; 0: "
             "never",

@@ -73,9 +73,8 @@ class ImplicitSprings final : public Stepper {
 
   SpringHessian hessian_;
   int max_iterations_;
-  double step_tolerance_;  // m
-  double reuse_below_;     // m
-  bool extrapolates_, predicts_tension_;
+  double step_tolerance_;       // m
+  double reuse_below_;          // m
   Positions inertial_, trial_;  // x + h v + h^2 g, and a line search's positions
   Positions ahead_;             // where history leads
   Positions before_;            // x^n, with drag only

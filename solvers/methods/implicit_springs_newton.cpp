@@ -36,7 +36,6 @@ double ImplicitSprings::start(const State& state, double h, Positions& x) {
   x = state.x;
   consider(inertial_);
   consider(state.x);
-  if (!extrapolates_) return lowest;
   ahead_ = state.x + h * state.v;
   // The time between states, not the last step's length: within BDF2 they differ.
   const double since = state.time - time_before_;
@@ -178,7 +177,7 @@ StepResult ImplicitSprings::newton(double h, double current, Positions& x) {
       return {Status::not_converged, j, -1, 0,
               "no step along Newton's direction lowers the energy"};
     }
-    if (predicts_tension_) predict_tension(x, trial_);
+    predict_tension(x, trial_);
     x.swap(trial_);
     if (contacts_inside() && put_on_planes(x)) {
       current = energy(x, h);
