@@ -61,9 +61,9 @@ std::array<int, 3> block_begin(const SymmetricPattern& pattern, int i, int j) {
 
 }  // namespace
 
-SpringHessian::SpringHessian(const Problem& problem, double stiffness, std::string_view wanted)
+SpringHessian::SpringHessian(const Problem& problem, double stiffness)
     : springs(springs_of(problem, stiffness)),
-      matrix(problem, coupled_vertices(problem, springs), wanted, 3) {
+      matrix(problem, coupled_vertices(problem, springs), "auto", 3) {
   const SymmetricPattern& pattern = matrix.pattern;
   for (int f = 0; f < static_cast<int>(matrix.vertex.size()); ++f) {
     const auto at = [&](int i, int j) { return pattern.place(3 * f + i, 3 * f + j); };
@@ -91,7 +91,7 @@ SpringHessian::SpringHessian(const Problem& problem, double stiffness, std::stri
 ImplicitSprings::ImplicitSprings(std::shared_ptr<const Problem> shared,
                                  const BackendOptions& options)
     : Stepper(std::move(shared)),
-      hessian_(problem(), options.number("stiffness"), options.word("linear_solver")),
+      hessian_(problem(), options.number("stiffness")),
       max_iterations_(options.count("max_iterations")),
       step_tolerance_(options.number("newton_tolerance") * options.strain_limit *
                       problem().shortest_rest_length()),
@@ -263,8 +263,7 @@ Backend implicit_springs_row() {
            {"reuse", 10.0,
             "a Newton step below this many tolerances keeps its factorization for the next; 0: "
             "never",
-            Range{}, SearchRange{0, 100}},
-           direct_solver("factorization of the Hessian", Takes::block_tridiagonal)},
+            Range{}, SearchRange{0, 100}}},
       .make = make_step<ImplicitSprings>,
       .direction = Direction::springs,
       .citation = "Baraff and Witkin 1998",

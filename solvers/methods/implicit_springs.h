@@ -8,7 +8,6 @@
 
 #include <array>
 #include <limits>
-#include <string_view>
 #include <vector>
 
 #include "solvers/methods/backend.h"
@@ -19,8 +18,7 @@ namespace inextensible {
 // The matrix that springs and bending couple vertices in, blocks of 3 x 3, and where each spring
 // and each bending stencil adds to it.
 struct SpringHessian {
-  // stiffness: EA of the edges, N. linear_solver: a name of make_spd_solver, or "auto".
-  SpringHessian(const Problem& problem, double stiffness, std::string_view linear_solver);
+  SpringHessian(const Problem& problem, double stiffness);  // EA of the edges, N
 
   struct Spring {
     int a, b;                     // vertices

@@ -9,7 +9,6 @@
 #include "solvers/methods/vertex_passes.h"
 #include "solvers/registry.h"
 #include "support/motion.h"
-#include "support/random_graph.h"
 
 namespace inextensible {
 namespace {
@@ -62,27 +61,6 @@ TEST(ImplicitSprings, FactorLessOftenWhereAFactorizationIsKept) {
   const WorkCounters never = work(0);
   EXPECT_EQ(never.factorizations, never.iterations);
   EXPECT_LT(work(10).factorizations, never.factorizations);
-}
-
-// The solver for chains against one that takes any matrix, in another elimination order.
-TEST(ImplicitSprings, TakeTheSameStepsByEitherFactorizationOfChains) {
-  for_seeds(24, [](Random& random, std::uint64_t seed) {
-    const RandomMesh mesh =
-        testing::random_chains(random, 1 + static_cast<int>(seed % 4), 0.1, true);
-    const State start = moving_state(random, mesh, 1);
-    const auto run = [&](const char* wanted, const char* used) {
-      const auto stepper = make_stepper(
-          "implicit_springs", mesh.problem,
-          {1e-2, 1, {{"linear_solver", std::string(wanted)}, {"newton_tolerance", 1e-6}}});
-      State state = start;
-      for (int i = 0; i < 3; ++i) EXPECT_TRUE(stepper->advance(state, h));
-      EXPECT_STREQ(stepper->linear_solver(), used);
-      return state.x;
-    };
-    const Positions chain = run("auto", "block_tridiagonal"),
-                    general = run("cholmod_simplicial", "cholmod_simplicial");
-    EXPECT_LT((chain - general).norm(), 1e-8 * general.norm());
-  });
 }
 
 // The step of Chen et al. 2024 for one vertex: x += H^-1 f.
