@@ -33,6 +33,9 @@ namespace {
 constexpr int patience = 8;
 constexpr double overshoot = 1e8, overshoot_in_contact = 100;
 constexpr double least_forcing = 1e-8, damped_forcing = 1e-4;
+// Target of damped projections: where J W J^T is singular, a straight row at full length has no
+// neighbour with C = 0, but many permissible ones.
+constexpr double inner_band = 0.6;
 constexpr double first_damping = 1e-4, least_damping = 1e-9, largest_damping = 1e8;
 
 class FastProjection final : public VelocityFilter {
@@ -46,7 +49,6 @@ class FastProjection final : public VelocityFilter {
         sweeps_before_(options.count("sweeps_before")),
         smoothing_sweeps_(options.count("smoothing_sweeps")),
         target_(options.number("target")),
-        inner_band_(options.number("inner_band")),
         first_forcing_(options.number("first_forcing")),
         best_{Positions(3, problem.vertices()), {}},
         u_(3, problem.constraints()),
@@ -158,7 +160,7 @@ class FastProjection final : public VelocityFilter {
       if (taken_back) {
         ++work.line_search_steps;
         restore_best(x);
-        linearize(inner_band_, x);
+        linearize(inner_band, x);
         error = mu_.squaredNorm();
       }
       if (j >= max_iterations_)
@@ -176,7 +178,7 @@ class FastProjection final : public VelocityFilter {
       const double predicted_error = damped_prediction(damping);
       correct(x);
       if (observer_) show(j + 1, x);
-      if (linearize(inner_band_, x)) return {Status::ok, j + 1};
+      if (linearize(inner_band, x)) return {Status::ok, j + 1};
       const double next_error = mu_.squaredNorm();
       taken_back = !(next_error < error);
       if (taken_back) {
@@ -208,7 +210,7 @@ class FastProjection final : public VelocityFilter {
   ConstraintSystem system_;
   Along along_;
   int max_iterations_, min_iterations_, sweeps_before_, smoothing_sweeps_;
-  double target_, inner_band_, first_forcing_;
+  double target_, first_forcing_;
   std::unique_ptr<StrainPasses> passes_;  // if any are asked for
   Iterate::Record best_;                  // x_j of least constraint error
   Eigen::Matrix3Xd u_;                    // gradient of C at x_j, or in the middle of the step
@@ -230,10 +232,6 @@ Backend fast_projection_row() {
           .settings = {iteration_limit(200, "projections a step before it is refused"),
                        least_iterations(),
                        projection_target(),
-                       // In that configuration a straight row at full length has no neighbour with
-                       // C = 0, but many permissible ones.
-                       {"inner_band", 0.6,
-                        "target of damped projections, where J W J^T is singular", below_limit},
                        // A projection sees the whole cloth, but only to first order; most of what
                        // it leaves is local, and cheaper to correct by passes over edges.
                        {"sweeps_before", 0.0,
