@@ -56,12 +56,11 @@ constexpr const char* pass_target =
 
 // The target of methods that solve for all edges at once: below 1, or they would only approach the
 // limit.
-constexpr Range below_limit{0, 0.99};
 inline SettingInfo projection_target() {
   return {"target", 0.0,
           "strained edges are brought to this fraction of the strain limit, those below it are "
           "kept",
-          below_limit, SearchRange{0, 0.9}};
+          Range{0, 0.99}, SearchRange{0, 0.9}};
 }
 
 inline SettingInfo word_setting(const char* name, const char* initial, const char* meaning,

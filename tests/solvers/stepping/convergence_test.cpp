@@ -213,21 +213,22 @@ TEST(Bdf2, IsExactInFreeFallWhateverTheSteps) {
     exact.row(1).array() -= 0.5 * 9.81 * t * t;
     EXPECT_LT((state.x - exact).cwiseAbs().maxCoeff(), 1e-14) << "t = " << t;
   }
-  EXPECT_EQ(stepper.restarts(), 2);  // the first step, and the growth from 0.01 to 0.03
 }
 
-TEST(Bdf2, StartsAnewFromAStateThatIsNotItsOwn) {
+TEST(Bdf2, RestartsFromAStateThatIsNotItsOwnAndInAStepGrownMoreThanTwofold) {
   const auto problem = free_edge();
-  auto used = bdf2(problem), fresh = bdf2(problem);
-  State state = inextensible::testing::stretched_edge(1);
-  state.v(1, 1) = 4;  // spins
-  for (int i = 0; i < 3; ++i) ASSERT_TRUE(used.advance(state, 0.01));
-  state.v *= 0.5;
-  State other = state;
-  ASSERT_TRUE(used.advance(state, 0.01));
-  ASSERT_TRUE(fresh.advance(other, 0.01));
-  EXPECT_EQ(used.restarts(), 2);
-  EXPECT_TRUE(state.x == other.x && state.v == other.v);
+  for (const auto& [slowed, h, restarts] :
+       {std::tuple(0.5, 0.01, true), std::tuple(1.0, 0.03, true), std::tuple(1.0, 0.02, false)}) {
+    auto used = bdf2(problem), fresh = bdf2(problem);
+    State state = inextensible::testing::stretched_edge(1);
+    state.v(1, 1) = 4;  // spins
+    for (int i = 0; i < 3; ++i) ASSERT_TRUE(used.advance(state, 0.01));
+    state.v *= slowed;
+    State other = state;
+    ASSERT_TRUE(used.advance(state, h));
+    ASSERT_TRUE(fresh.advance(other, h));
+    EXPECT_EQ(state.x == other.x && state.v == other.v, restarts);
+  }
 }
 
 // A step of another size keeps the order: steps alternate between h and 1.5 h.
@@ -241,7 +242,6 @@ TEST(Bdf2, KeepsItsOrderWhenTheStepChanges) {
     for (int i = 0; state.time < stretch - 1e-9; ++i)
       ASSERT_TRUE(stepper.advance(state, i % 2 == 0 ? h : 1.5 * h));
     ASSERT_NEAR(state.time, stretch, 1e-9);
-    EXPECT_EQ(stepper.restarts(), 1);
     steps.push_back(h);
     errors.push_back(rms_distance(scene, state.x, exact));
   }
