@@ -56,14 +56,13 @@ class KktSystem final : public KktSolver {
  public:
   KktSystem(const Problem& problem, const EdgeConstraints& edges, FactoredBy by)
       : KktSolver(problem, edges), umfpack_only_(by == FactoredBy::umfpack) {
-    const std::size_t n = problem.vertices();
-    vertex_unknown_.assign(n, -1);
-    for (std::size_t v = 0; v < n; ++v) {
+    vertex_unknown_.assign(problem.vertices(), -1);
+    for (int v = 0; v < problem.vertices(); ++v) {
       if (problem.inverse_mass()[v] == 0) continue;
-      vertex_unknown_[v] = 3 * static_cast<int>(scaled_mass_.size());
-      scaled_mass_.push_back(problem.mass()[v] / mean_mass_);
+      vertex_unknown_[v] = 3 * static_cast<int>(free_vertex_.size());
+      free_vertex_.push_back(v);
     }
-    multiplier_offset_ = 3 * static_cast<int>(scaled_mass_.size());
+    multiplier_offset_ = 3 * static_cast<int>(free_vertex_.size());
     size_ = multiplier_offset_ + edges.count();
 
     build_pattern();
@@ -119,7 +118,8 @@ class KktSystem final : public KktSolver {
 
   void assemble() {
     std::fill(matrix_.begin(), matrix_.end(), 0.0);
-    for (int i = 0; i < multiplier_offset_; ++i) matrix_[diagonal_[i]] = scaled_mass_[i / 3];
+    for (int i = 0; i < multiplier_offset_; ++i)
+      matrix_[diagonal_[i]] = problem_.mass()[free_vertex_[i / 3]] / mean_mass_;
     for (std::size_t k = 0; k < edge_places_.size(); ++k) {
       const EdgePlaces& places = edge_places_[k];
       const double curved = curvature(static_cast<Eigen::Index>(k));
@@ -193,10 +193,7 @@ class KktSystem final : public KktSolver {
 
   bool solve_itself(const Positions& r, const Eigen::VectorXd& c, Positions& p, Eigen::VectorXd& q,
                     WorkCounters& work) override {
-    for (int v = 0; v < problem_.vertices(); ++v) {
-      for (int axis = 0; axis < 3; ++axis)
-        if (const int i = unknown(v, axis); i >= 0) rhs_[place_[i]] = r(axis, v);
-    }
+    for (int i = 0; i < multiplier_offset_; ++i) rhs_[place_[i]] = r(i % 3, free_vertex_[i / 3]);
     for (Eigen::Index k = 0; k < c.size(); ++k) rhs_[place_[multiplier_offset_ + k]] = c[k];
 
     const double scale = rhs_.norm();
@@ -218,10 +215,8 @@ class KktSystem final : public KktSolver {
     }
 
     p.setZero();
-    for (int v = 0; v < problem_.vertices(); ++v) {
-      for (int axis = 0; axis < 3; ++axis)
-        if (const int i = unknown(v, axis); i >= 0) p(axis, v) = solution_[place_[i]];
-    }
+    for (int i = 0; i < multiplier_offset_; ++i)
+      p(i % 3, free_vertex_[i / 3]) = solution_[place_[i]];
     for (Eigen::Index k = 0; k < c.size(); ++k) q[k] = solution_[place_[multiplier_offset_ + k]];
     return true;
   }
@@ -233,7 +228,7 @@ class KktSystem final : public KktSolver {
   bool umfpack_only_;
   bool using_umfpack_ = false;
   std::vector<int> vertex_unknown_;  // first of a vertex's three unknowns, -1 if pinned
-  std::vector<double> scaled_mass_;  // per free vertex place, m / mean_mass
+  std::vector<int> free_vertex_;
   int size_ = 0, multiplier_offset_ = 0;
   std::vector<int> place_;  // unknown -> row in elimination order
   SymmetricPattern pattern_;
