@@ -21,7 +21,7 @@ std::string fault_of(const SettingInfo& info, double number) {
 }
 
 std::string fault_of(const SettingInfo& info, const std::string& word) {
-  if (std::find(info.choices.begin(), info.choices.end(), word) != info.choices.end()) return {};
+  if (std::ranges::find(info.choices, word) != info.choices.end()) return {};
   std::string choices;
   for (const char* choice : info.choices) {
     if (!choices.empty()) choices += ", ";
@@ -68,8 +68,7 @@ Settings complete_settings(const Backend& backend, const Settings& given) {
     std::visit([&](auto initial) { all[info.name] = initial; }, info.initial);
   }
   for (const auto& [name, value] : given) {
-    const auto info = std::find_if(backend.settings.begin(), backend.settings.end(),
-                                   [&name = name](const SettingInfo& s) { return name == s.name; });
+    const auto info = std::ranges::find(backend.settings, name, &SettingInfo::name);
     const std::string fault =
         info == backend.settings.end() ? " does not exist" : fault_of(*info, value);
     if (!fault.empty()) {

@@ -231,9 +231,8 @@ class ChainKkt final : public KktSolver {
 bool forms_chains(const Problem& problem) {
   const std::vector<int> after = edges_after(problem);
   const std::vector<Run> runs = runs_of(problem, after);
-  return !after.empty() && std::none_of(runs.begin(), runs.end(), [](const Run& run) {
-    return run.pin_before && run.pin_after;
-  });
+  return !after.empty() &&
+         std::ranges::none_of(runs, [](const Run& run) { return run.pin_before && run.pin_after; });
 }
 
 std::unique_ptr<KktSolver> make_chain_kkt(const Problem& problem, const EdgeConstraints& edges) {
