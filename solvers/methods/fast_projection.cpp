@@ -199,10 +199,9 @@ class FastProjection final : public VelocityFilter {
   double damped_prediction(double damping) const {
     const EdgeConstraints& edges = system_.edges();
     double sum = 0;
-    for (std::size_t k = 0; k < edges.wa.size(); ++k) {
-      const auto e = static_cast<Eigen::Index>(k);
-      const double d = (edges.wa[k] + edges.wb[k]) * u_.col(e).squaredNorm();
-      sum += std::pow(damping * d * mu_[e], 2);
+    for (int k = 0; k < edges.count(); ++k) {
+      const double d = (edges.wa[k] + edges.wb[k]) * u_.col(k).squaredNorm();
+      sum += std::pow(damping * d * mu_[k], 2);
     }
     return sum;
   }
