@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "solvers/methods/colored_edges.h"
-#include "solvers/problem/iterate.h"
+#include "solvers/problem/contacts.h"
 #include "solvers/systems/constraint_system.h"
 
 namespace inextensible {

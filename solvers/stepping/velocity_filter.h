@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "solvers/problem/iterate.h"
+#include "solvers/problem/contacts.h"
 #include "solvers/stepping/stepper.h"
 #include "solvers/systems/implicit_forces.h"
 
