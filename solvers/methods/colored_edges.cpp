@@ -22,7 +22,7 @@
 namespace inextensible {
 namespace {
 
-constexpr int bridge = 4;  // so many fillers cost less than the end of a block
+constexpr int bridge = 4;  // this many fillers cost less than ending a block
 constexpr std::size_t least_run = ColoredEdges::width / 2;  // shorter ones are listed
 
 int round_up(int count, int multiple) { return (count + multiple - 1) / multiple * multiple; }

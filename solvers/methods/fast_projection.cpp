@@ -28,8 +28,8 @@
 namespace inextensible {
 namespace {
 
-// Iterations without a new least |C|: Newton often recovers from a rise or two. Not, however, from
-// a rise of |C|^2 by this factor, where J W J^T was singular but for rounding, and digits are lost.
+// Iterations without a new least |C|: Newton often recovers from a rise or two, but not from a rise
+// of |C|^2 by `overshoot`, where J W J^T is singular up to rounding and digits are lost.
 constexpr int patience = 8;
 constexpr double overshoot = 1e8, overshoot_in_contact = 100;
 constexpr double least_forcing = 1e-8, damped_forcing = 1e-4;
@@ -126,12 +126,7 @@ class FastProjection final : public VelocityFilter {
     if (observer_) best_multipliers_ = multipliers_;
   }
 
-  void restore_best(Iterate x) {
-    x.restore(best_);
-    if (observer_) multipliers_ = best_multipliers_;
-  }
-
-  // Colored Gauss-Seidel, at most so many passes.
+  // At most this many passes of colored Gauss-Seidel.
   void pass(int most, Iterate x, WorkCounters& work) {
     if (!passes_ || most == 0) return;
     passes_->load(x);
@@ -159,7 +154,8 @@ class FastProjection final : public VelocityFilter {
     for (bool taken_back = true;; ++j) {
       if (taken_back) {
         ++work.line_search_steps;
-        restore_best(x);
+        x.restore(best_);
+        if (observer_) multipliers_ = best_multipliers_;
         linearize(inner_band, x);
         error = mu_.squaredNorm();
       }

@@ -93,7 +93,7 @@ class ImplicitSprings final : public Stepper {
 
   enum class Search { full, shortened, at_minimum, failed };
 
-  // The step along step_ that lowers the energy `current` enough, to trial_, its energy to current.
+  // Finds a step along step_ that lowers the energy `current` enough; trial_ and `current` get it.
   Search search(const Positions& x, double longest, double& current) {
     const double slope = energy_.gradient().dot(step_);
     double scale = 1;
@@ -119,7 +119,7 @@ class ImplicitSprings final : public Stepper {
     }
   }
 
-  // Vertices that went through planes, and those that are held: onto them. Whether that moved any.
+  // Puts vertices that went through planes, and those that are held, onto them; whether any moved.
   bool put_on_planes(Positions& x) {
     const Contacts::Timing measured = contacts_->timing();
     contacts_->find(x, work_);

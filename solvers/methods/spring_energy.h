@@ -21,7 +21,7 @@ class SpringEnergy {
  public:
   SpringEnergy(const Problem& problem, double stiffness);  // EA of the edges, N
 
-  // Of a step of h seconds from `state`, whose tensions are those of the last accepted one.
+  // Begins a step of h seconds from `state` with the tensions of the last accepted step.
   void begin(const State& state, double h);
   void accept() { pull_before_.swap(pull_); }
   Positions& inertial() { return inertial_; }  // y
@@ -33,7 +33,7 @@ class SpringEnergy {
   const Eigen::VectorXd& gradient() const { return gradient_; }
   // n . gradient of a contact, J s^2 / m / kg: what its plane bears.
   double reaction(int contact) const { return reaction_[contact]; }
-  // Tension becomes what the springs, linear at x, pull with at `to`, over their vectors there.
+  // Sets tensions to those of the springs, linearized at x, at `to`, over their vectors there.
   void predict_tension(const Positions& x, const Positions& to);
 
   const VertexMatrix& matrix() const { return matrix_; }

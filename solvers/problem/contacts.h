@@ -1,5 +1,5 @@
-// The vertices that a collider keeps out of its obstacle during one step: where each may not go,
-// what has pushed it back from there, and the friction that this brings.
+// The contacts of one step: planes that keep vertices out of the obstacle, accumulated pushes, and
+// lagged friction.
 //
 // A plane of normal n pushes and never pulls:
 //   push >= 0,  n . x >= offset,  push (n . x - offset) = 0,
