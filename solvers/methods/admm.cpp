@@ -47,7 +47,7 @@ class Admm final : public VelocityFilter {
                    problem.shortest_rest_length()),
         shortest_(std::max(1 - options.number("target") * options.strain_limit, 0.0)),
         longest_(1 + options.number("target") * options.strain_limit),
-        matrix_(problem, ends_of(problem), options.word("linear_solver"), 1),
+        matrix_(problem, ends_of(problem), "auto", 1),
         target_(3, problem.vertices()) {
     for (const auto [a, b] : problem.edges()) {
       weight_.push_back(options.number("penalty") /
@@ -226,8 +226,7 @@ Backend admm_row() {
            // So much of what pulls at vertices is not yet what edges do.
            {"direction_tolerance", 1.0,
             "last move of an edge's projection, times penalty, in strain limit times rest length",
-            positive, tunable_direction_tolerance},
-           direct_solver("factorization of the constant matrix", Takes::tridiagonal)},
+            positive, tunable_direction_tolerance}},
       .make_filter = make_filter<Admm>,
       .direction = Direction::end,
       .citation = "Liu et al. 2013; Narain, Overby and Brown 2016",

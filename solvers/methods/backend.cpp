@@ -4,36 +4,33 @@
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
-#include <string_view>
+#include <utility>
 
 namespace inextensible {
 namespace {
 
-std::string fault_of(const SettingInfo& info, double number) {
-  const Range& range = info.range;
-  if (range.contains(number)) return {};
-  std::ostringstream text;
-  text << " is " << number << ", must be " << (range.whole ? "an integer" : "finite");
-  text << (range.open ? ", above " : ", at least ") << range.least;
-  if (std::isfinite(range.largest))
-    text << (range.open ? " and below " : " and at most ") << range.largest;
-  return text.str();
-}
-
-std::string fault_of(const SettingInfo& info, const std::string& word) {
-  if (std::find(info.choices.begin(), info.choices.end(), word) != info.choices.end()) return {};
-  std::string choices;
-  for (const char* choice : info.choices) {
-    if (!choices.empty()) choices += ", ";
-    choices += choice;
-  }
-  return " is '" + word + "', must be one of: " + choices;
-}
-
+// What is wrong with the value, as the end of a sentence; empty: nothing.
 std::string fault_of(const SettingInfo& info, const std::variant<double, std::string>& value) {
+  const auto* number = std::get_if<double>(&value);
+  const auto* word = std::get_if<std::string>(&value);
   if (info.initial.index() != value.index())
-    return value.index() == 0 ? " must be a word" : " must be a number";
-  return std::visit([&info](const auto& v) { return fault_of(info, v); }, value);
+    return number ? " must be a word" : " must be a number";
+  const Range& range = info.range;
+  const bool fits = number ? range.contains(*number)
+                           : std::ranges::find(info.choices, *word) != info.choices.end();
+  if (fits) return {};
+  std::ostringstream text;
+  if (number) {
+    text << " is " << *number << ", must be " << (range.whole ? "an integer" : "finite")
+         << (range.open ? ", above " : ", at least ") << range.least;
+    if (std::isfinite(range.largest))
+      text << (range.open ? " and below " : " and at most ") << range.largest;
+  } else {
+    text << " is '" << *word << "', must be one of: ";
+    for (const char* separator = ""; const char* choice : info.choices)
+      text << std::exchange(separator, ", ") << choice;
+  }
+  return text.str();
 }
 
 }  // namespace
@@ -68,8 +65,7 @@ Settings complete_settings(const Backend& backend, const Settings& given) {
     std::visit([&](auto initial) { all[info.name] = initial; }, info.initial);
   }
   for (const auto& [name, value] : given) {
-    const auto info = std::find_if(backend.settings.begin(), backend.settings.end(),
-                                   [&name = name](const SettingInfo& s) { return name == s.name; });
+    const auto info = std::ranges::find(backend.settings, name, &SettingInfo::name);
     const std::string fault =
         info == backend.settings.end() ? " does not exist" : fault_of(*info, value);
     if (!fault.empty()) {

@@ -116,8 +116,8 @@ struct Backend {
   // `make` is backward Euler, and does not depend on which states it is given: BDF2 takes it from
   // one that it extrapolates.
   bool backward_euler = false;
-  // The time stepper, and who offers that; `method`: the name without it. The
-  // registry fills them in; a published stepper that is not backward Euler the row names.
+  // The time stepper and its origin; `method`: the name without it. The registry fills these in; a
+  // row names its published stepper if that is not backward Euler.
   const char* stepper = "";
   Origin stepper_origin = Origin::paper;
   const char* method = "";

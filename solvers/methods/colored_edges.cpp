@@ -15,13 +15,14 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <functional>
 #include <map>
 #include <tuple>
 
 namespace inextensible {
 namespace {
 
-constexpr int bridge = 4;  // so many fillers cost less than the end of a block
+constexpr int bridge = 4;  // this many fillers cost less than ending a block
 constexpr std::size_t least_run = ColoredEdges::width / 2;  // shorter ones are listed
 
 int round_up(int count, int multiple) { return (count + multiple - 1) / multiple * multiple; }
@@ -31,8 +32,7 @@ int stride_of(const Problem& problem) {
   std::map<int, int> edges_with;
   for (const Edge& e : problem.edges()) ++edges_with[std::abs(e.b - e.a)];
   edges_with.erase(1);
-  const auto most = std::max_element(edges_with.begin(), edges_with.end(),
-                                     [](auto& p, auto& q) { return p.second < q.second; });
+  const auto most = std::ranges::max_element(edges_with, {}, [](auto& p) { return p.second; });
   const bool woven = most != edges_with.end() && 8 * most->second >= problem.constraints();
   return woven ? most->first : problem.vertices();
 }
@@ -53,8 +53,7 @@ struct ColoredEdges::Link {
 
 int Palette::take(std::span<const int> places) {
   int color = 0;
-  while (std::any_of(places.begin(), places.end(),
-                     [&](int place) { return taken_[place].contains(color); }))
+  while (std::ranges::any_of(places, [&](int place) { return taken_[place].contains(color); }))
     ++color;
   for (const int place : places) taken_[place].insert(color);
   return color;
@@ -88,8 +87,8 @@ std::vector<ColoredEdges::Link> ColoredEdges::links_by_kind(const Problem& probl
     const int p = place_[e.a], q = place_[e.b], a = std::min(p, q);
     links.push_back({a / lane_, std::abs(q - p), a, std::max(p, q), k, p > q, 0});
   }
-  std::sort(links.begin(), links.end(), [](const Link& p, const Link& q) {
-    return std::tie(p.lane, p.distance, p.a, p.edge) < std::tie(q.lane, q.distance, q.a, q.edge);
+  std::ranges::sort(links, {}, [](const Link& link) {
+    return std::tuple(link.lane, link.distance, link.a, link.edge);
   });
   return links;
 }
@@ -102,13 +101,13 @@ void ColoredEdges::color(std::vector<Link>& links) const {
                          return !link.same_kind(*begin);
                        }));
   }
-  std::stable_sort(kinds.begin(), kinds.end(), [](Kind p, Kind q) { return p.size() > q.size(); });
+  std::ranges::stable_sort(kinds, std::ranges::greater{}, std::ranges::size);
   Palette palette(vertex_.size());
   for (const Kind kind : kinds) {
     std::vector<int> ends;
     for (const Link& link : kind) ends.insert(ends.end(), {link.a, link.b});
-    std::sort(ends.begin(), ends.end());
-    const bool matching = std::adjacent_find(ends.begin(), ends.end()) == ends.end();
+    std::ranges::sort(ends);
+    const bool matching = std::ranges::adjacent_find(ends) == ends.end();
     if (kind.size() >= least_run && matching) {
       const int color = palette.take(ends);
       for (Link& link : kind) link.color = color;
@@ -119,8 +118,7 @@ void ColoredEdges::color(std::vector<Link>& links) const {
 }
 
 void ColoredEdges::make_blocks(std::vector<Link>& links) {
-  std::stable_sort(links.begin(), links.end(),
-                   [](const Link& p, const Link& q) { return p.color < q.color; });
+  std::ranges::stable_sort(links, {}, &Link::color);
   std::vector<Link> single;
   for (auto begin = links.begin(), end = begin; begin != links.end(); begin = end) {
     // Both ends of a block, fillers included, must be different places.

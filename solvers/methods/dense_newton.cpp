@@ -1,8 +1,7 @@
 // Two rows that are no contestants.
 //
-// dense_newton: the M-closest point of {C = 0} (ICD = SAP,
-// Goldenthal et al. 2007, Theorem 1) to 1e-12, by dense Newton with full pivoting. Slow and
-// obvious: what tests compare with, for small n.
+// dense_newton: the M-closest point of {C = 0} (ICD = SAP, Goldenthal et al. 2007, Theorem 1) to
+// 1e-12, by dense Newton with full pivoting: slow and obvious, what tests compare with for small n.
 //
 // null: the unconstrained step alone, which measures what the scene and the harness cost.
 #include <Eigen/Dense>

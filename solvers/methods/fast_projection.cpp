@@ -28,11 +28,14 @@
 namespace inextensible {
 namespace {
 
-// Iterations without a new least |C|: Newton often recovers from a rise or two. Not, however, from
-// a rise of |C|^2 by this factor, where J W J^T was singular but for rounding, and digits are lost.
+// Iterations without a new least |C|: Newton often recovers from a rise or two, but not from a rise
+// of |C|^2 by `overshoot`, where J W J^T is singular up to rounding and digits are lost.
 constexpr int patience = 8;
 constexpr double overshoot = 1e8, overshoot_in_contact = 100;
 constexpr double least_forcing = 1e-8, damped_forcing = 1e-4;
+// Target of damped projections: where J W J^T is singular, a straight row at full length has no
+// neighbour with C = 0, but many permissible ones.
+constexpr double inner_band = 0.6;
 constexpr double first_damping = 1e-4, least_damping = 1e-9, largest_damping = 1e8;
 
 class FastProjection final : public VelocityFilter {
@@ -46,7 +49,6 @@ class FastProjection final : public VelocityFilter {
         sweeps_before_(options.count("sweeps_before")),
         smoothing_sweeps_(options.count("smoothing_sweeps")),
         target_(options.number("target")),
-        inner_band_(options.number("inner_band")),
         first_forcing_(options.number("first_forcing")),
         best_{Positions(3, problem.vertices()), {}},
         u_(3, problem.constraints()),
@@ -124,12 +126,7 @@ class FastProjection final : public VelocityFilter {
     if (observer_) best_multipliers_ = multipliers_;
   }
 
-  void restore_best(Iterate x) {
-    x.restore(best_);
-    if (observer_) multipliers_ = best_multipliers_;
-  }
-
-  // Colored Gauss-Seidel, at most so many passes.
+  // At most this many passes of colored Gauss-Seidel.
   void pass(int most, Iterate x, WorkCounters& work) {
     if (!passes_ || most == 0) return;
     passes_->load(x);
@@ -157,8 +154,9 @@ class FastProjection final : public VelocityFilter {
     for (bool taken_back = true;; ++j) {
       if (taken_back) {
         ++work.line_search_steps;
-        restore_best(x);
-        linearize(inner_band_, x);
+        x.restore(best_);
+        if (observer_) multipliers_ = best_multipliers_;
+        linearize(inner_band, x);
         error = mu_.squaredNorm();
       }
       if (j >= max_iterations_)
@@ -176,7 +174,7 @@ class FastProjection final : public VelocityFilter {
       const double predicted_error = damped_prediction(damping);
       correct(x);
       if (observer_) show(j + 1, x);
-      if (linearize(inner_band_, x)) return {Status::ok, j + 1};
+      if (linearize(inner_band, x)) return {Status::ok, j + 1};
       const double next_error = mu_.squaredNorm();
       taken_back = !(next_error < error);
       if (taken_back) {
@@ -197,10 +195,9 @@ class FastProjection final : public VelocityFilter {
   double damped_prediction(double damping) const {
     const EdgeConstraints& edges = system_.edges();
     double sum = 0;
-    for (std::size_t k = 0; k < edges.wa.size(); ++k) {
-      const auto e = static_cast<Eigen::Index>(k);
-      const double d = (edges.wa[k] + edges.wb[k]) * u_.col(e).squaredNorm();
-      sum += std::pow(damping * d * mu_[e], 2);
+    for (int k = 0; k < edges.count(); ++k) {
+      const double d = (edges.wa[k] + edges.wb[k]) * u_.col(k).squaredNorm();
+      sum += std::pow(damping * d * mu_[k], 2);
     }
     return sum;
   }
@@ -208,7 +205,7 @@ class FastProjection final : public VelocityFilter {
   ConstraintSystem system_;
   Along along_;
   int max_iterations_, min_iterations_, sweeps_before_, smoothing_sweeps_;
-  double target_, inner_band_, first_forcing_;
+  double target_, first_forcing_;
   std::unique_ptr<StrainPasses> passes_;  // if any are asked for
   Iterate::Record best_;                  // x_j of least constraint error
   Eigen::Matrix3Xd u_;                    // gradient of C at x_j, or in the middle of the step
@@ -230,10 +227,6 @@ Backend fast_projection_row() {
           .settings = {iteration_limit(200, "projections a step before it is refused"),
                        least_iterations(),
                        projection_target(),
-                       // In that configuration a straight row at full length has no neighbour with
-                       // C = 0, but many permissible ones.
-                       {"inner_band", 0.6,
-                        "target of damped projections, where J W J^T is singular", below_limit},
                        // A projection sees the whole cloth, but only to first order; most of what
                        // it leaves is local, and cheaper to correct by passes over edges.
                        {"sweeps_before", 0.0,

@@ -175,10 +175,9 @@ class Icd final : public VelocityFilter {
   void evaluate(const Positions& dx) {
     permissible_ = edges_.linearize(trial_, u_, c_, target_);  // (4) and (2)
     f_ = dx * mass_.asDiagonal();                              // M times the F of section 4.1
-    for (std::size_t k = 0; k < edges_.a.size(); ++k) {
-      const auto e = static_cast<Eigen::Index>(k);
-      f_.col(edges_.a[k]) -= trial_mu_[e] * u_.col(e);
-      f_.col(edges_.b[k]) += trial_mu_[e] * u_.col(e);
+    for (int k = 0; k < edges_.count(); ++k) {
+      f_.col(edges_.a[k]) -= trial_mu_[k] * u_.col(k);
+      f_.col(edges_.b[k]) += trial_mu_[k] * u_.col(k);
     }
     for (const int vertex : problem_.pinned()) f_.col(vertex).setZero();
     active_.take_reactions(mass_, f_);

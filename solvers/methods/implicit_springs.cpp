@@ -1,254 +1,242 @@
-// A backward Euler step minimizes  E(x) = 1/2 |x - (x^n + h v^n + h^2 g)|_M^2 + h^2 V(x),  V =
-// stretch and shear springs. Newton with each spring's Hessian projected to be positive
-// semidefinite (a compressed spring's negative stiffness across its direction is dropped; Choi and
-// Ko 2002, Teran et al. 2005) always descends; backtracking on E. Loops: one assembly,
-// factorization and solve, and one or more energy evaluations, an iteration.
+// Implicit stiff springs (Baraff and Witkin 1998 and their kin): backward Euler with stretching as
+// springs, as the minimum of an energy (spring_energy.h).
 //
-// Three things make it cheap without changing E, its gradient, the descent test or the criterion to
-// stop. (1) Newton starts at the lowest of the free flight, the start of the step, and its
-// extrapolation to second order. (2) Stiff springs are almost constraints: their tension at an
-// iterate is far off, that of the last linearization is not, and is the Hessian's stiffness across
-// the spring (as primal-dual methods keep a multiplier). (3) Near the end a factorization is kept
-// for further iterations while these shrink.
-#include "solvers/methods/implicit_springs.h"
-
+// Edge k has stiffness EA / l_k, so strain = tension / EA at any resolution. The method has no
+// strain limit of its own: EA controls the strain, and the harness finds the one that keeps a run
+// within the limit.
+//
+// Newton with a positive definite matrix always descends; backtracking on E. Three things make it
+// cheap without changing E, its gradient, the descent test or the criterion to stop. (1) Newton
+// starts at the lowest of the free flight, the start of the step, and its extrapolation to second
+// order. (2) Tensions in the matrix are predicted. (3) Near the end a factorization is kept for
+// further iterations while these shrink. Loops: one assembly, factorization and solve, and one or
+// more energy evaluations, an iteration.
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <limits>
 
 #include "solvers/methods/rows.h"
+#include "solvers/methods/spring_energy.h"
 
 namespace inextensible {
 namespace {
 
-// A held vertex's stiffness along the normal, over the rest of its diagonal block.
-constexpr double stiff_normal = 1e6;
+constexpr double held = 1e-300;  // m: a push that says no more than that
+constexpr int halving_limit = 30;
+constexpr double armijo_fraction = 1e-4;
+constexpr double rounding = 1e-14;
+// What a step with an old factorization must shrink to, times the last. The error it leaves is then
+// no more than the step itself.
+constexpr double fast_convergence = 0.5;
 
-std::vector<SpringHessian::Spring> springs_of(const Problem& problem, double stiffness) {
-  std::vector<SpringHessian::Spring> springs;
-  const auto add = [&](Edge e, double rest, double k) {
-    springs.push_back({e.a, e.b, -1, -1, rest, k, {}});
-  };
-  for (std::size_t k = 0; k < problem.edges().size(); ++k) {
-    add(problem.edges()[k], problem.rest_length()[k], stiffness / problem.rest_length()[k]);
+class ImplicitSprings final : public Stepper {
+ public:
+  ImplicitSprings(std::shared_ptr<const Problem> shared, const BackendOptions& options)
+      : Stepper(std::move(shared)),
+        energy_(problem(), options.number("stiffness")),
+        max_iterations_(options.count("max_iterations")),
+        step_tolerance_(options.number("newton_tolerance") * options.strain_limit *
+                        problem().shortest_rest_length()),
+        reuse_below_(options.number("reuse") * step_tolerance_) {
+    if (step_tolerance_ == 0) step_tolerance_ = 1e-12;  // no edge says what is small: rounding
+    for (Positions* x : {&trial_, &ahead_, &v_before_}) x->resize(3, problem().vertices());
+    if (problem().contact_inside()) released_.resize(problem().vertices());
   }
-  if (const Springs* shear = problem.shear()) {
-    for (std::size_t k = 0; k < shear->edges.size(); ++k)
-      add(shear->edges[k], shear->rest_length[k], shear->stiffness[k]);
+  const char* linear_solver() const override { return energy_.matrix().linear_solver.c_str(); }
+  double reciprocal_condition() const override {
+    return energy_.matrix().solver->reciprocal_condition();
   }
-  return springs;
-}
 
-Pairs coupled_vertices(const Problem& problem, const std::vector<SpringHessian::Spring>& springs) {
-  Pairs pairs;
-  for (const auto& s : springs) pairs.emplace_back(s.a, s.b);
-  for (const BendingStencil& s : problem.bending()) {
-    for (std::size_t i = 0; i < 4; ++i) {
-      for (std::size_t j = 0; j < i; ++j) pairs.emplace_back(s.vertex[i], s.vertex[j]);
+ private:
+  StepResult solve(const State& state, double h, Positions& x) override {
+    Stopwatch stopwatch(phases_wanted_);
+    energy_.begin(state, h);
+    if (contacts_inside()) {
+      contacts_->apply_friction(energy_.inertial(), work_);
+      contacts_->find(energy_.inertial(), work_);
+      std::fill(released_.begin(), released_.end(), Release::never);
+      for (int c = 0; c < contacts_->count(); ++c) contacts_->set_push(c, held);
+    }
+    const double lowest = start(state, h, x);
+    const StepResult result = newton(lowest, x);
+    phases_.unconstrained += stopwatch();
+    return result;
+  }
+
+  void count_evaluations() { work_.spring_evaluations += energy_.springs(); }
+
+  // Where Newton starts, to x; returns its energy. Whatever the history is, the start is never
+  // higher than the free flight and the start of the step.
+  double start(const State& state, double h, Positions& x) {
+    double lowest = std::numeric_limits<double>::infinity();
+    const auto consider = [&](const Positions& candidate) {
+      trial_ = candidate;
+      if (contacts_inside()) put_on_planes(trial_);
+      const double here = energy_.value(trial_);
+      count_evaluations();
+      if (here < lowest) {
+        lowest = here;
+        x.swap(trial_);
+      }
+    };
+    x = state.x;
+    consider(energy_.inertial());
+    consider(state.x);
+    ahead_ = state.x + h * state.v;
+    // The time between states, not the last step's length: within BDF2 they differ.
+    const double since = state.time - time_before_;
+    if (since > 0) ahead_ += (h * h / since) * (state.v - v_before_);
+    for (const int vertex : problem().pinned()) ahead_.col(vertex) = state.x.col(vertex);
+    consider(ahead_);
+    return lowest;
+  }
+
+  enum class Search { full, shortened, at_minimum, failed };
+
+  // Finds a step along step_ that lowers the energy `current` enough; trial_ and `current` get it.
+  Search search(const Positions& x, double longest, double& current) {
+    const double slope = energy_.gradient().dot(step_);
+    double scale = 1;
+    for (int halvings = 0;; ++halvings) {
+      trial_ = x;
+      for (std::size_t f = 0; f < energy_.matrix().vertex.size(); ++f) {
+        trial_.col(energy_.matrix().vertex[f]) +=
+            scale * step_.segment<3>(static_cast<Eigen::Index>(3 * f));
+      }
+      const double next = energy_.value(trial_);
+      count_evaluations();
+      // Near the minimum the decrease drowns in rounding: a step below the tolerance is then taken
+      // as it is.
+      if (next <= current + armijo_fraction * scale * slope || longest <= step_tolerance_) {
+        current = next;
+        return halvings == 0 ? Search::full : Search::shortened;
+      }
+      // The decrease that is left is below the energy's rounding error: this is the minimum.
+      if (-slope <= rounding * current) return Search::at_minimum;
+      if (halvings == halving_limit || !std::isfinite(slope)) return Search::failed;
+      scale *= 0.5;
+      ++work_.line_search_steps;
     }
   }
-  return pairs;
-}
 
-// Where each column of the block that couples i and j begins among a matrix's values.
-std::array<int, 3> block_begin(const SymmetricPattern& pattern, int i, int j) {
-  if (pattern.triangle ==
-      (i < j ? SymmetricPattern::Triangle::lower : SymmetricPattern::Triangle::upper))
-    std::swap(i, j);
-  const auto at = [&](int c) { return pattern.place(3 * i, 3 * j + c); };
-  return {at(0), at(1), at(2)};
-}
+  // Puts vertices that went through planes, and those that are held, onto them; whether any moved.
+  bool put_on_planes(Positions& x) {
+    const Contacts::Timing measured = contacts_->timing();
+    contacts_->find(x, work_);
+    bool moved = false;
+    for (int c = 0; c < contacts_->count(); ++c) {
+      auto at = x.col(contacts_->vertex(c));
+      const double gap = contacts_->gap(c, at);
+      if (!contacts_->holds(c)) {
+        if (gap >= -contacts_->tolerance()) continue;
+        contacts_->set_push(c, held);
+      }
+      moved |= std::abs(gap) > contacts_->tolerance();
+      at -= gap * contacts_->normal(c);
+    }
+    return moved;
+  }
+
+  // At the energy's minimum within the planes: whether one of them pulls, and so releases its
+  // vertex. One that comes back stays for the rest of the step, so that this ends. The others push
+  // by what moves a free mass as far.
+  bool release_pulled() {
+    const Contacts::Timing measured = contacts_->timing();
+    bool released = false;
+    for (int c = 0; c < contacts_->count(); ++c) {
+      if (!contacts_->holds(c)) continue;
+      const double push = energy_.reaction(c) / problem().mass()[contacts_->vertex(c)];
+      if (push < 0 && released_[c] == Release::never) {
+        contacts_->set_push(c, 0);
+        released_[c] = Release::once;
+        released = true;
+      } else {
+        contacts_->set_push(c, std::max(push, held));
+      }
+    }
+    return released;
+  }
+
+  // Lowers the energy, `current` at x, to its minimum.
+  StepResult newton(double current, Positions& x) {
+    // Every step would seem to lower it.
+    if (!std::isfinite(current)) return {Status::not_finite, 0, -1, 0, "the energy overflows"};
+    if (energy_.matrix().vertex.empty()) return {};  // all are pinned: x is where they are
+
+    bool reuse = false;
+    double last_longest = 0;
+    for (int j = 0;; ++j) {
+      if (j == max_iterations_) return {Status::not_converged, j, -1, 0, "iteration limit"};
+      energy_.assemble(x, contacts_inside(), !reuse);
+      if (reuse) {
+        count_evaluations();
+      } else {
+        ++work_.assemblies;
+        if (!factor_counted(*energy_.matrix().solver, work_)) {
+          return {std::isfinite(current) ? Status::singular : Status::not_finite, j, -1, 0,
+                  "the Newton matrix is singular"};
+        }
+      }
+      step_ = -energy_.gradient();
+      energy_.matrix().solver->solve(
+          step_.data());  // Newton; Baraff and Witkin (1998) take its first step only
+      ++work_.back_solves;
+      const double longest =
+          std::sqrt(Eigen::Map<const Positions>(step_.data(), 3, step_.size() / 3)
+                        .colwise()
+                        .squaredNorm()
+                        .maxCoeff());
+      const Search found = search(x, longest, current);
+      if (found == Search::at_minimum) {
+        if (!contacts_inside() || !release_pulled()) return {Status::ok, j + 1};
+        reuse = false;
+        continue;
+      }
+      if (found == Search::failed) {
+        return {Status::not_converged, j, -1, 0,
+                "no step along Newton's direction lowers the energy"};
+      }
+      energy_.predict_tension(x, trial_);
+      count_evaluations();
+      x.swap(trial_);
+      if (contacts_inside() && put_on_planes(x)) {
+        current = energy_.value(x);
+        reuse = false;
+        last_longest = longest;
+        continue;
+      }
+      const bool fast = !reuse || longest <= fast_convergence * last_longest;
+      const bool ended = found == Search::full && fast && longest <= step_tolerance_;
+      const bool released = ended && contacts_inside() && release_pulled();
+      if (ended && !released) return {Status::ok, j + 1};
+      reuse = found == Search::full && fast && longest <= reuse_below_ && !released;
+      last_longest = longest;
+    }
+  }
+
+  // The history is of accepted steps, so that one tried again after a refusal starts as it did.
+  StepResult end_velocities(const State& before, double h, const Positions& x,
+                            Positions& v) override {
+    v_before_ = before.v;
+    time_before_ = before.time;
+    energy_.accept();
+    return Stepper::end_velocities(before, h, x, v);
+  }
+
+  SpringEnergy energy_;
+  int max_iterations_;
+  double step_tolerance_;  // m
+  double reuse_below_;     // m
+  Positions trial_;        // a line search's
+  Positions ahead_;        // where history leads
+  enum class Release : char { never, once };
+  std::vector<Release> released_;  // of each contact, in this step; with contact inside only
+  Eigen::VectorXd step_;
+  Positions v_before_;                                            // v^{n-1}
+  double time_before_ = std::numeric_limits<double>::infinity();  // s, of v_before_
+};
 
 }  // namespace
-
-SpringHessian::SpringHessian(const Problem& problem, double stiffness, std::string_view wanted)
-    : springs(springs_of(problem, stiffness)),
-      matrix(problem, coupled_vertices(problem, springs), wanted, 3) {
-  const SymmetricPattern& pattern = matrix.pattern;
-  for (int f = 0; f < static_cast<int>(matrix.vertex.size()); ++f) {
-    const auto at = [&](int i, int j) { return pattern.place(3 * f + i, 3 * f + j); };
-    diagonal.push_back({at(0, 0), at(0, 1), at(1, 1), at(0, 2), at(1, 2), at(2, 2)});
-  }
-  for (Spring& s : springs) {
-    s.fa = matrix.place[s.a];
-    s.fb = matrix.place[s.b];
-    if (s.fa < 0 || s.fb < 0) continue;
-    s.coupling = block_begin(pattern, s.fa, s.fb);
-  }
-  for (const BendingStencil& s : problem.bending()) {
-    Hinge hinge{};
-    for (std::size_t i = 0, pair = 0; i < 4; ++i) {
-      hinge.f[i] = matrix.place[s.vertex[i]];
-      for (std::size_t j = 0; j < i; ++j, ++pair) {
-        if (hinge.f[i] >= 0 && hinge.f[j] >= 0)
-          hinge.coupling[pair] = block_begin(pattern, hinge.f[i], hinge.f[j]);
-      }
-    }
-    hinges.push_back(hinge);
-  }
-}
-
-ImplicitSprings::ImplicitSprings(std::shared_ptr<const Problem> shared,
-                                 const BackendOptions& options)
-    : Stepper(std::move(shared)),
-      hessian_(problem(), options.number("stiffness"), options.word("linear_solver")),
-      max_iterations_(options.count("max_iterations")),
-      step_tolerance_(options.number("newton_tolerance") * options.strain_limit *
-                      problem().shortest_rest_length()),
-      reuse_below_(options.number("reuse") * step_tolerance_),
-      extrapolates_(options.word("start") == "extrapolated"),
-      predicts_tension_(options.word("tension") == "linearized") {
-  const Problem& p = problem();
-  if (step_tolerance_ == 0) step_tolerance_ = 1e-12;  // no edge says what is small: rounding
-  for (Positions* x : {&inertial_, &trial_, &ahead_, &v_before_}) x->resize(3, p.vertices());
-  if (p.has_drag()) before_.resize(3, p.vertices());
-  if (p.contact_inside()) {
-    reaction_.resize(p.vertices());
-    released_.resize(p.vertices());
-  }
-  const auto unknowns = static_cast<Eigen::Index>(3 * hessian_.matrix.vertex.size());
-  gradient_.resize(unknowns);
-  step_.resize(unknowns);
-  pull_.resize(hessian_.springs.size());
-  pull_before_.assign(hessian_.springs.size(), 0.0);
-}
-
-double ImplicitSprings::energy(const Positions& x, double h) const {
-  double inertia = 0, potential = 0;
-  for (const int v : hessian_.matrix.vertex)
-    inertia += problem().mass()[v] * (x.col(v) - inertial_.col(v)).squaredNorm();
-  if (problem().has_drag()) {  // backward Euler's drag is the gradient of h / 2 |x - x^n|_D^2
-    for (const int v : hessian_.matrix.vertex)
-      inertia += h * problem().drag(v) * (x.col(v) - before_.col(v)).squaredNorm();
-  }
-  potential += 2 * bending_energy(problem().bending(), x);
-  const double* p = x.data();
-  for (const Spring& s : hessian_.springs) {
-    const double* pa = p + 3 * s.a;
-    const double* pb = p + 3 * s.b;
-    const double d0 = pb[0] - pa[0], d1 = pb[1] - pa[1], d2 = pb[2] - pa[2];
-    const double elongation = std::sqrt(d0 * d0 + d1 * d1 + d2 * d2) - s.rest;
-    potential += s.k * elongation * elongation;
-  }
-  return 0.5 * (inertia + h * h * potential);
-}
-
-// gradient_ and, if wanted, the solver's matrix: M + h^2 sum of projected spring Hessians, at x.
-void ImplicitSprings::assemble(const Positions& x, double h, bool matrix) {
-  double* value = hessian_.matrix.solver->values();
-  if (matrix) std::fill(value, value + hessian_.matrix.pattern.entries(), 0.0);
-  const double* p = x.data();
-  double* g = gradient_.data();
-  for (std::size_t f = 0; f < hessian_.matrix.vertex.size(); ++f) {
-    const int v = hessian_.matrix.vertex[f];
-    const double mass = problem().mass()[v];
-    const double drag = problem().has_drag() ? h * problem().drag(v) : 0;
-    for (int i = 0; i < 3; ++i) {
-      g[3 * f + i] = mass * (x(i, v) - inertial_(i, v));
-      if (problem().has_drag()) g[3 * f + i] += drag * (x(i, v) - before_(i, v));
-    }
-    const Places& at = hessian_.diagonal[f];
-    if (matrix) value[at.xx] = value[at.yy] = value[at.zz] = mass + drag;
-  }
-  assemble_bending(x, h, matrix);
-  for (std::size_t k = 0; k < hessian_.springs.size(); ++k) {
-    const Spring& s = hessian_.springs[k];
-    const double* pa = p + 3 * s.a;
-    const double* pb = p + 3 * s.b;
-    const double dx = pb[0] - pa[0], dy = pb[1] - pa[1], dz = pb[2] - pa[2];
-    const double squared = dx * dx + dy * dy + dz * dz;
-    const double inverse_length = squared > 0 ? 1 / std::sqrt(squared) : 0;
-    const double stiffness = h * h * s.k;
-    // Over the spring's vector; one of length zero has no direction and no force.
-    const double pull = squared > 0 ? stiffness * (1 - s.rest * inverse_length) : 0;
-    const auto push = [&](int f, double signed_pull) {
-      double* gf = g + 3 * f;
-      gf[0] += signed_pull * dx, gf[1] += signed_pull * dy, gf[2] += signed_pull * dz;
-    };
-    if (s.fa >= 0) push(s.fa, -pull);
-    if (s.fb >= 0) push(s.fb, pull);
-    if (!matrix) continue;
-    // The projected transverse stiffness.
-    const double transverse =
-        std::clamp(predicts_tension_ ? h * h * pull_[k] : pull, 0.0, stiffness);
-    add_block(s, {dx, dy, dz}, (stiffness - transverse) * (inverse_length * inverse_length),
-              transverse);
-  }
-  if (contacts_inside()) hold_in_planes(matrix);
-}
-
-// along d d^T + transverse I: both diagonal blocks, and the coupling with the opposite sign.
-inline void ImplicitSprings::add_block(const Spring& s, const std::array<double, 3>& d,
-                                       double along, double transverse) {
-  double* value = hessian_.matrix.solver->values();
-  const auto [dx, dy, dz] = d;
-  const double xx = along * dx * dx + transverse, xy = along * dx * dy, xz = along * dx * dz,
-               yy = along * dy * dy + transverse, yz = along * dy * dz,
-               zz = along * dz * dz + transverse;
-  const auto add = [&](int f) {
-    const Places& at = hessian_.diagonal[f];
-    value[at.xx] += xx, value[at.xy] += xy, value[at.yy] += yy;
-    value[at.xz] += xz, value[at.yz] += yz, value[at.zz] += zz;
-  };
-  if (s.fa >= 0) add(s.fa);
-  if (s.fb >= 0) add(s.fb);
-  if (s.fa < 0 || s.fb < 0) return;
-  double* cx = value + s.coupling[0];  // the block is symmetric: either orientation
-  double* cy = value + s.coupling[1];
-  double* cz = value + s.coupling[2];
-  cx[0] -= xx, cx[1] -= xy, cx[2] -= xz;
-  cy[0] -= xy, cy[1] -= yy, cy[2] -= yz;
-  cz[0] -= xz, cz[1] -= yz, cz[2] -= zz;
-}
-
-// A held vertex moves within its plane (the filter S = I - n n^T of Baraff and Witkin 1998): its
-// gradient loses what leads along n, and so does the step, by a stiffness along n that leaves next
-// to nothing of it.
-void ImplicitSprings::hold_in_planes(bool matrix) {
-  const Contacts::Timing measured = contacts_->timing();
-  double* value = hessian_.matrix.solver->values();
-  for (int c = 0; c < contacts_->count(); ++c) {
-    if (!contacts_->holds(c)) continue;
-    const Eigen::Vector3d n = contacts_->normal(c);
-    const int f = hessian_.matrix.place[contacts_->vertex(c)];
-    auto g = gradient_.segment<3>(3 * f);
-    reaction_[c] = n.dot(g);
-    g -= reaction_[c] * n;
-    if (!matrix) continue;
-    const Places& at = hessian_.diagonal[f];
-    const double k = stiff_normal * (value[at.xx] + value[at.yy] + value[at.zz]);
-    value[at.xx] += k * n[0] * n[0], value[at.xy] += k * n[0] * n[1];
-    value[at.yy] += k * n[1] * n[1], value[at.xz] += k * n[0] * n[2];
-    value[at.yz] += k * n[1] * n[2], value[at.zz] += k * n[2] * n[2];
-  }
-}
-
-// Bending's share of both: quadratic, so that the matrix is its Hessian.
-void ImplicitSprings::assemble_bending(const Positions& x, double h, bool matrix) {
-  double* value = hessian_.matrix.solver->values();
-  for (std::size_t k = 0; k < hessian_.hinges.size(); ++k) {
-    const BendingStencil& s = problem().bending()[k];
-    const Hinge& hinge = hessian_.hinges[k];
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (std::size_t i = 0; i < 4; ++i) sum += s.coefficient[i] * x.col(s.vertex[i]);
-    for (std::size_t i = 0, pair = 0; i < 4; ++i) {
-      const int f = hinge.f[i];
-      const double stiffness = h * h * s.stiffness * s.coefficient[i];
-      if (f >= 0) gradient_.segment<3>(3 * f) += stiffness * sum;
-      for (std::size_t j = 0; j < i; ++j, ++pair) {
-        if (!matrix || f < 0 || hinge.f[j] < 0 || s.coefficient[i] * s.coefficient[j] == 0)
-          continue;
-        for (std::size_t axis = 0; axis < 3; ++axis)
-          value[static_cast<std::size_t>(hinge.coupling[pair][axis]) + axis] +=
-              stiffness * s.coefficient[j];
-      }
-      if (!matrix || f < 0) continue;
-      const Places& at = hessian_.diagonal[f];
-      const double own = stiffness * s.coefficient[i];
-      value[at.xx] += own, value[at.yy] += own, value[at.zz] += own;
-    }
-  }
-}
 
 Backend implicit_springs_row() {
   return {
@@ -261,21 +249,12 @@ Backend implicit_springs_row() {
            {"newton_tolerance", 0.1, "last Newton step, in strain limit times shortest rest length",
             positive, SearchRange{0.01, 10}},
            // Instructions at 1 % strain and 1/100 s, plain Newton = 1, on the chain of 80 and the
-           // drape of 21 x 21: start and tension take 0.66 and 0.77, with reuse 0.59 and 0.55. A
-           // reuse of 30 takes 0.55 and 0.53 but ends steps less exactly on the chain.
-           word_setting("start", "extrapolated",
-                        "where Newton starts: at the lowest of free flight, last positions and "
-                        "their extrapolation to second order, or of the first two",
-                        {"extrapolated", "flight"}),
-           word_setting("tension", "linearized",
-                        "which tension stiffens the Hessian across a spring: that of the last "
-                        "linearization, or of the positions",
-                        {"linearized", "current"}),
+           // drape of 21 x 21: 0.66 and 0.77 without reuse, 0.59 and 0.55 with 10. A reuse of 30
+           // takes 0.55 and 0.53 but ends steps less exactly on the chain.
            {"reuse", 10.0,
             "a Newton step below this many tolerances keeps its factorization for the next; 0: "
             "never",
-            Range{}, SearchRange{0, 100}},
-           direct_solver("factorization of the Hessian", Takes::block_tridiagonal)},
+            Range{}, SearchRange{0, 100}}},
       .make = make_step<ImplicitSprings>,
       .direction = Direction::springs,
       .citation = "Baraff and Witkin 1998",

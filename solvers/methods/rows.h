@@ -56,12 +56,11 @@ constexpr const char* pass_target =
 
 // The target of methods that solve for all edges at once: below 1, or they would only approach the
 // limit.
-constexpr Range below_limit{0, 0.99};
 inline SettingInfo projection_target() {
   return {"target", 0.0,
           "strained edges are brought to this fraction of the strain limit, those below it are "
           "kept",
-          below_limit, SearchRange{0, 0.9}};
+          Range{0, 0.99}, SearchRange{0, 0.9}};
 }
 
 inline SettingInfo word_setting(const char* name, const char* initial, const char* meaning,
@@ -69,26 +68,12 @@ inline SettingInfo word_setting(const char* name, const char* initial, const cha
   return {.name = name, .initial = initial, .meaning = meaning, .choices = std::move(choices)};
 }
 
-// "auto" and the linear solvers that `fit`.
-template <class Fits>
-SettingInfo linear_solver_setting(const char* meaning, Fits fits) {
+inline SettingInfo schur_solver() {
   std::vector<const char*> names{"auto"};
   for (const SpdSolverRow& row : spd_solvers()) {
-    if (fits(row)) names.push_back(row.name);
+    if (row.takes != Takes::block_tridiagonal) names.push_back(row.name);
   }
-  return word_setting("linear_solver", "auto", meaning, std::move(names));
-}
-
-inline SettingInfo schur_solver() {
-  return linear_solver_setting("factorization of J W J^T",
-                               [](auto& row) { return row.takes != Takes::block_tridiagonal; });
-}
-
-// A direct one in full precision for another matrix, which may have the special pattern `takes`.
-inline SettingInfo direct_solver(const char* meaning, Takes takes) {
-  return linear_solver_setting(meaning, [takes](auto& row) {
-    return (row.takes == Takes::any || row.takes == takes) && row.precision == Precision::full;
-  });
+  return word_setting("linear_solver", "auto", "factorization of J W J^T", std::move(names));
 }
 
 }  // namespace inextensible

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "solvers/methods/colored_edges.h"
-#include "solvers/problem/iterate.h"
+#include "solvers/problem/contacts.h"
 #include "solvers/systems/constraint_system.h"
 
 namespace inextensible {
@@ -100,12 +100,12 @@ class StrainPasses {
   enum class Order { in_turn, at_once };
   StepResult limit(Order order, int most_passes, const EdgeConstraints& edges, Iterate x,
                    WorkCounters& work);
-  // Whether to stop after so many passes: at most `most`, and no more than some with overflow.
+  // Whether to stop after this many passes: at most `most`, fewer where positions overflow.
   bool gives_up(int passes, int most) const {
     return passes == most || (passes % 64 == 63 && !finite());
   }
-  // Nothing is left to correct, or passes were given up for the reason `limit` (null: they were
-  // not): ok if x, as stored, is permissible.
+  // Ok if x, as stored, is within the limit. `limit`: why passes were given up; null: nothing was
+  // left to correct.
   static StepResult verdict(int passes, const char* limit, const EdgeConstraints& edges,
                             const Positions& x);
 

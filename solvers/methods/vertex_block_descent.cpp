@@ -71,8 +71,7 @@ class VertexBlockDescent final : public Stepper {
       passes_.read_pushes(*contacts);
       if (contacts->find(x, work_) == 0) break;
       if (round == most_contact_rounds) {
-        return {Status::not_converged, result.iterations, -1, 0,
-                "ever more vertices in the obstacle"};
+        return {Status::not_converged, result.iterations, -1, 0, "the contact set did not settle"};
       }
     }
     phases_.unconstrained += stopwatch();

@@ -9,6 +9,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <utility>
 
 namespace inextensible {
 
@@ -106,10 +107,8 @@ void VertexPasses::place_vertices(const Ends& ends) {
   for (std::size_t v = 0; v < color.size(); ++v) {
     if (color[v] >= 0) order.push_back(static_cast<int>(v));
   }
-  std::stable_sort(order.begin(), order.end(), [&](int p, int q) {
-    return color[p] != color[q] ? color[p] < color[q]
-                                : ends.springs[p].size() > ends.springs[q].size();
-  });
+  std::ranges::stable_sort(
+      order, {}, [&](int v) { return std::pair(color[v], -std::ssize(ends.springs[v])); });
   for (std::size_t i = 0; i < order.size(); ++i) {
     if (i == 0 || color[order[i]] != color[order[i - 1]])
       vertex_.resize((vertex_.size() + width - 1) / width * width, -1);

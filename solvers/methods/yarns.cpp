@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <numeric>
+#include <tuple>
 
 #include "solvers/methods/yarn_pass.h"
 
@@ -13,14 +13,14 @@ namespace {
 using Neighbours = std::vector<std::vector<Neighbour>>;
 
 bool joined(const Neighbours& at, int a, int b) {
-  return std::any_of(at[a].begin(), at[a].end(), [b](const auto& n) { return n.vertex == b; });
+  return std::ranges::any_of(at[a], [b](const Neighbour& n) { return n.vertex == b; });
 }
 
 // Whether the edges from v to a and to b are sides of one triangle or quad.
 bool share_a_face(const Neighbours& at, int v, int a, int b) {
   if (a == b || joined(at, a, b)) return true;
-  return std::any_of(at[a].begin(), at[a].end(),
-                     [&](const auto& n) { return n.vertex != v && joined(at, n.vertex, b); });
+  return std::ranges::any_of(
+      at[a], [&](const Neighbour& n) { return n.vertex != v && joined(at, n.vertex, b); });
 }
 
 // Which end of an edge v is, and the vertex at the other.
@@ -81,15 +81,13 @@ std::vector<Yarn> yarns_of(const Problem& problem) {
     if (!used[k]) follow(k, problem.edges()[k].a);
   }
   Palette palette(problem.vertices());
-  std::map<int, std::size_t> edges_of;
+  std::map<int, std::ptrdiff_t> edges_of;
   for (Yarn& yarn : yarns) {
     yarn.color = palette.take(yarn.vertices);
-    edges_of[yarn.color] += yarn.edges.size();
+    edges_of[yarn.color] += std::ssize(yarn.edges);
   }
-  std::stable_sort(yarns.begin(), yarns.end(), [&](const Yarn& p, const Yarn& q) {
-    if (p.color != q.color)
-      return std::pair(edges_of[q.color], p.color) < std::pair(edges_of[p.color], q.color);
-    return p.edges.size() > q.edges.size();
+  std::ranges::stable_sort(yarns, {}, [&](const Yarn& yarn) {
+    return std::tuple(-edges_of[yarn.color], yarn.color, -std::ssize(yarn.edges));
   });
   return yarns;
 }

@@ -44,8 +44,8 @@ Bending plate_bending(const std::vector<std::array<int, 3>>& triangles, const Ei
     if (at.size() != 2) continue;
     const auto [e0, e1] = edge;
     const auto opposite = [&triangles, &edge = edge](std::size_t t) {
-      return *std::find_if(triangles[t].begin(), triangles[t].end(),
-                           [&edge](int v) { return v != edge.first && v != edge.second; });
+      return *std::ranges::find_if(triangles[t],
+                                   [&edge](int v) { return v != edge.first && v != edge.second; });
     };
     const int e2 = opposite(at[0]), e3 = opposite(at[1]);
     const auto from = [&x](int p, int q) -> Vector3d { return x.col(q) - x.col(p); };

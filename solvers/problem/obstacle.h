@@ -1,4 +1,4 @@
-// A problem's collider, there where its motion has brought it.
+// A problem's collider where its motion has brought it.
 #pragma once
 
 #include "solvers/problem/problem.h"
@@ -13,7 +13,7 @@ class Obstacle {
     if (problem.body_motion()) seen_.resize(3, problem.vertices());
   }
 
-  // From now on it is where it is at `time`, s. Of one that moves, before anything else.
+  // Moves it to where it is at `time`, s. Comes first for one that moves.
   void place(double time) {
     if (const BodyMotion& motion = problem_.body_motion()) pose_ = motion(time);
   }

@@ -78,9 +78,9 @@ void check_drag(const std::vector<double>& drag, std::size_t vertices) {
 void put_in_order(Springs& springs) {
   std::vector<std::size_t> order(springs.edges.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t s, std::size_t t) {
-    const Edge e = springs.edges[s], f = springs.edges[t];
-    return std::pair(e.b - e.a, e.a) < std::pair(f.b - f.a, f.a);
+  std::ranges::stable_sort(order, {}, [&](std::size_t s) {
+    const auto [a, b] = springs.edges[s];
+    return std::pair(b - a, a);
   });
   Springs ordered;
   for (const std::size_t s : order) {
@@ -92,12 +92,9 @@ void put_in_order(Springs& springs) {
 }
 
 void put_in_order(Bending& bending) {
-  std::stable_sort(bending.begin(), bending.end(), [](const auto& s, const auto& t) {
-    const auto shape = [](const BendingStencil& stencil) {
-      const auto [a, b, c, d] = stencil.vertex;
-      return std::array{b - a, c - a, d - a, a};
-    };
-    return shape(s) < shape(t);
+  std::ranges::stable_sort(bending, {}, [](const BendingStencil& stencil) {
+    const auto [a, b, c, d] = stencil.vertex;
+    return std::array{b - a, c - a, d - a, a};
   });
 }
 
@@ -136,10 +133,9 @@ Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
     refuse("pins that follow a body that does not move");
   total_mass_ = std::accumulate(parts_.mass.begin(), parts_.mass.end(), 0.0);
   if (!parts_.rest_length.empty()) {
-    const auto [shortest, longest] =
-        std::minmax_element(parts_.rest_length.begin(), parts_.rest_length.end());
-    shortest_rest_length_ = *shortest;
-    longest_rest_length_ = *longest;
+    const auto [shortest, longest] = std::ranges::minmax(parts_.rest_length);
+    shortest_rest_length_ = shortest;
+    longest_rest_length_ = longest;
   }
 }
 

@@ -340,8 +340,7 @@ bool TriangleCollider::plane_at(const Vector3d& p, ContactPlane& plane, WorkCoun
       const double* t = planes_[triangle].data();
       return t[3] - t[0] * p.x() - t[1] * p.y() - t[2] * p.z();
     };
-    const Eigen::RowVector4d& least = planes_[*std::min_element(
-        list.begin(), list.end(), [&](int s, int t) { return behind(s) < behind(t); })];
+    const Eigen::RowVector4d& least = planes_[*std::ranges::min_element(list, {}, behind)];
     plane.normal = least.head<3>();
     plane.offset = least[3];
     return true;

@@ -24,7 +24,6 @@ void Bdf2History::restart(const State& state, double h, const Positions& acceler
   x_ = state.x - h * state.v + (0.5 * h * h) * acceleration;
   v_ = state.v - h * acceleration;
   h_ = h;
-  ++restarts_;
 }
 
 Bdf2Coefficients Bdf2History::coefficients(double h) const {

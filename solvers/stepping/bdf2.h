@@ -37,14 +37,12 @@ class Bdf2History {
 
   const Positions& x() const { return x_; }  // x^{n-1}
   const Positions& v() const { return v_; }  // v^{n-1}
-  std::int64_t restarts() const { return restarts_; }
 
  private:
   const Problem& problem_;
   Positions x_, v_;
   Positions x_known_, v_known_;  // x^n and v^n, as the last step left them
   double h_ = 0;                 // s, of the last step; 0: no history
-  std::int64_t restarts_ = 0;
 };
 
 // A velocity filter inside BDF2 (English and Bridson 2008 take constrained dynamics there this
@@ -58,10 +56,6 @@ class Bdf2History {
 class Bdf2Stepper final : public FilterStepper {
  public:
   Bdf2Stepper(std::shared_ptr<const Problem> problem, std::unique_ptr<VelocityFilter> filter);
-
-  // How often the whole history was restarted: first step, foreign state, step grown more than
-  // twofold.
-  std::int64_t restarts() const { return history_.restarts(); }
 
  private:
   bool unconstrained(const State& state, double h, Positions& x) override;

@@ -31,7 +31,7 @@ StepResult apply_until_clear(VelocityFilter& filter, Contacts* contacts, const P
       return {Status::not_converged, iterations, -1, 0, "a spurious solution, far from the start"};
     if (contacts->find(x, work) == 0) return result;
     if (round == most_rounds)
-      return {Status::not_converged, iterations, -1, 0, "ever more vertices in the obstacle"};
+      return {Status::not_converged, iterations, -1, 0, "the contact set did not settle"};
   }
 }
 

@@ -3,15 +3,15 @@
 
 #include <memory>
 
-#include "solvers/problem/iterate.h"
+#include "solvers/problem/contacts.h"
 #include "solvers/stepping/stepper.h"
 #include "solvers/systems/implicit_forces.h"
 
 namespace inextensible {
 
-// Where a filter's corrections point: along the edges as they are, or as they are in the middle of
-// the step, halfway from where it began to where they are. An edge that has turned by more than 90
-// degrees is corrected along itself.
+// Where a filter's corrections point: along the edges as they are, or along their middles, halfway
+// between the start of the step and now. An edge that has turned by more than 90 degrees is
+// corrected along itself.
 enum class Along { edges, middle };
 
 // A velocity filter: takes start-of-step and candidate positions, moves the candidate onto the
@@ -36,8 +36,8 @@ class VelocityFilter {
   IterateObserver* observer_ = nullptr;
 };
 
-// The filter, as often as it takes until nothing is inside the obstacle: a contact is found when it
-// is needed. contacts: null, or begun.
+// Repeats the filter until no vertex is inside the obstacle; contacts are found as they are needed.
+// contacts: null, or begun.
 StepResult apply_until_clear(VelocityFilter& filter, Contacts* contacts, const Positions& x_start,
                              double h, Positions& x, WorkCounters& work);
 

@@ -48,16 +48,13 @@ bool ConstraintSystem::solve(Eigen::VectorXd& mu, WorkCounters& work, double tol
   for (const double c : mu) largest = std::max(largest, std::abs(c));
   const bool solved = solver_->solve_within(tolerance, mu.data());
   ++work.back_solves;
-  return solved && (chain_ || moderate(mu, largest));
-}
-
-bool ConstraintSystem::moderate(const Eigen::VectorXd& mu, double largest) const {
+  if (!solved || chain_) return solved;
   const double* values = solver_->values();
   const SymmetricPattern& pattern = schur_->pattern();
-  bool all = true;
+  bool moderate = true;
   for (int k = 0; k < pattern.n; ++k)
-    all &= std::abs(mu[k]) * values[pattern.diagonal(k)] <= largest_growth * largest;
-  return all;
+    moderate &= std::abs(mu[k]) * values[pattern.diagonal(k)] <= largest_growth * largest;
+  return moderate;
 }
 
 StepResult refuse(Status status, int iterations, const EdgeConstraints& edges, const Positions& x,

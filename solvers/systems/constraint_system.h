@@ -47,8 +47,6 @@ class ConstraintSystem {
   bool solve(Eigen::VectorXd& mu, WorkCounters& work, double tolerance = SpdSolver::tightest);
 
  private:
-  bool moderate(const Eigen::VectorXd& mu, double largest) const;
-
   std::string solver_name_;
   bool chain_ = false;
   std::unique_ptr<EdgeConstraints> edges_;

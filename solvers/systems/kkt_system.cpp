@@ -14,62 +14,55 @@ constexpr int refinement_limit = 8;
 
 // L D L^T of a sparse quasi-definite matrix in its own order, by Eigen's up-looking code. Such a
 // matrix has negative pivots, and is factored without pivoting in any order (Vanderbei 1995).
-class QuasiDefiniteSolver {
+class QuasiDefiniteSolver : Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Upper,
+                                                  Eigen::NaturalOrdering<int>> {
  public:
   explicit QuasiDefiniteSolver(const SymmetricPattern& upper_triangle) {
     const std::vector<double> zeros(upper_triangle.entries(), 0.0);
     matrix_ = Eigen::Map<const Eigen::SparseMatrix<double>>(
         upper_triangle.n, upper_triangle.n, upper_triangle.entries(),
         upper_triangle.column_start.data(), upper_triangle.row_index.data(), zeros.data());
-    ldlt_.analyzePattern(matrix_);
+    analyzePattern(matrix_);
   }
   double* values() { return matrix_.valuePtr(); }  // in the pattern's order
   // false: a pivot is zero or not finite.
   bool factor() {
-    ldlt_.factorize(matrix_);
-    return ldlt_.info() == Eigen::Success && ldlt_.d().allFinite();
+    factorize(matrix_);
+    return info() == Eigen::Success && m_diag.allFinite();
   }
   // Overwrites the right-hand side by the solution.
   void solve(double* rhs) const {
-    Eigen::Map<Eigen::VectorXd> x(rhs, ldlt_.d().size());
-    ldlt_.matrixL().solveInPlace(x);
-    x.array() /= ldlt_.d().array();
-    ldlt_.matrixU().solveInPlace(x);
+    Eigen::Map<Eigen::VectorXd> x(rhs, m_diag.size());  // vectorD() would return a copy
+    matrixL().solveInPlace(x);
+    x.array() /= m_diag.array();
+    matrixU().solveInPlace(x);
   }
   // From the last factorization: the matrix's negative eigenvalues (Sylvester's law of inertia).
-  int negative_pivots() const { return static_cast<int>((ldlt_.d().array() < 0).count()); }
+  int negative_pivots() const { return static_cast<int>((m_diag.array() < 0).count()); }
   double reciprocal_condition() const {  // smallest over largest pivot
-    const auto pivots = ldlt_.d().array().abs();
+    const auto pivots = m_diag.array().abs();
     return pivots.minCoeff() / pivots.maxCoeff();
   }
-  double factor_nonzeros() const { return ldlt_.nonzeros(); }
-  double factor_flops() const { return ldlt_.flops(); }
+  double factor_nonzeros() const { return (m_nonZerosPerCol.array().cast<double>() + 1).sum(); }
+  double factor_flops() const {
+    return (m_nonZerosPerCol.array().cast<double>() + 1).square().sum();
+  }
 
  private:
-  struct Ldlt : Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Upper,
-                                      Eigen::NaturalOrdering<int>> {
-    // vectorD() returns a copy, and so allocates.
-    const VectorType& d() const { return m_diag; }
-    double nonzeros() const { return (m_nonZerosPerCol.array().cast<double>() + 1).sum(); }
-    double flops() const { return (m_nonZerosPerCol.array().cast<double>() + 1).square().sum(); }
-  };
-
   Eigen::SparseMatrix<double> matrix_;
-  Ldlt ldlt_;
 };
 
 class KktSystem final : public KktSolver {
  public:
   KktSystem(const Problem& problem, const EdgeConstraints& edges, FactoredBy by)
       : KktSolver(problem, edges), umfpack_only_(by == FactoredBy::umfpack) {
-    const std::size_t n = problem.vertices();
-    vertex_unknown_.assign(n, -1);
-    for (std::size_t v = 0; v < n; ++v) {
+    vertex_unknown_.assign(problem.vertices(), -1);
+    for (int v = 0; v < problem.vertices(); ++v) {
       if (problem.inverse_mass()[v] == 0) continue;
-      vertex_unknown_[v] = 3 * static_cast<int>(scaled_mass_.size());
-      scaled_mass_.push_back(problem.mass()[v] / mean_mass_);
+      vertex_unknown_[v] = 3 * static_cast<int>(free_vertex_.size());
+      free_vertex_.push_back(v);
     }
-    multiplier_offset_ = 3 * static_cast<int>(scaled_mass_.size());
+    multiplier_offset_ = 3 * static_cast<int>(free_vertex_.size());
     size_ = multiplier_offset_ + edges.count();
 
     build_pattern();
@@ -125,7 +118,8 @@ class KktSystem final : public KktSolver {
 
   void assemble() {
     std::fill(matrix_.begin(), matrix_.end(), 0.0);
-    for (int i = 0; i < multiplier_offset_; ++i) matrix_[diagonal_[i]] = scaled_mass_[i / 3];
+    for (int i = 0; i < multiplier_offset_; ++i)
+      matrix_[diagonal_[i]] = problem_.mass()[free_vertex_[i / 3]] / mean_mass_;
     for (std::size_t k = 0; k < edge_places_.size(); ++k) {
       const EdgePlaces& places = edge_places_[k];
       const double curved = curvature(static_cast<Eigen::Index>(k));
@@ -199,10 +193,7 @@ class KktSystem final : public KktSolver {
 
   bool solve_itself(const Positions& r, const Eigen::VectorXd& c, Positions& p, Eigen::VectorXd& q,
                     WorkCounters& work) override {
-    for (int v = 0; v < problem_.vertices(); ++v) {
-      for (int axis = 0; axis < 3; ++axis)
-        if (const int i = unknown(v, axis); i >= 0) rhs_[place_[i]] = r(axis, v);
-    }
+    for (int i = 0; i < multiplier_offset_; ++i) rhs_[place_[i]] = r(i % 3, free_vertex_[i / 3]);
     for (Eigen::Index k = 0; k < c.size(); ++k) rhs_[place_[multiplier_offset_ + k]] = c[k];
 
     const double scale = rhs_.norm();
@@ -224,10 +215,8 @@ class KktSystem final : public KktSolver {
     }
 
     p.setZero();
-    for (int v = 0; v < problem_.vertices(); ++v) {
-      for (int axis = 0; axis < 3; ++axis)
-        if (const int i = unknown(v, axis); i >= 0) p(axis, v) = solution_[place_[i]];
-    }
+    for (int i = 0; i < multiplier_offset_; ++i)
+      p(i % 3, free_vertex_[i / 3]) = solution_[place_[i]];
     for (Eigen::Index k = 0; k < c.size(); ++k) q[k] = solution_[place_[multiplier_offset_ + k]];
     return true;
   }
@@ -239,7 +228,7 @@ class KktSystem final : public KktSolver {
   bool umfpack_only_;
   bool using_umfpack_ = false;
   std::vector<int> vertex_unknown_;  // first of a vertex's three unknowns, -1 if pinned
-  std::vector<double> scaled_mass_;  // per free vertex place, m / mean_mass
+  std::vector<int> free_vertex_;
   int size_ = 0, multiplier_offset_ = 0;
   std::vector<int> place_;  // unknown -> row in elimination order
   SymmetricPattern pattern_;

@@ -58,8 +58,8 @@ class ProjectedCg final : public KktSolver {
     set_curvature(convex_);
     // D: M and what tension adds to the diagonal.
     inverse_metric_ = mass_;
-    for (std::size_t k = 0; k < edges_.a.size(); ++k) {
-      const double tension = std::max(curvature_[static_cast<Eigen::Index>(k)], 0.0);
+    for (int k = 0; k < edges_.count(); ++k) {
+      const double tension = std::max(curvature_[k], 0.0);
       inverse_metric_[edges_.a[k]] += tension;
       inverse_metric_[edges_.b[k]] += tension;
     }
@@ -81,8 +81,8 @@ class ProjectedCg final : public KktSolver {
   // r -= J^T q.
   void subtract_gradients(const Eigen::VectorXd& q, Positions& r) const {
     const double* u = u_->data();
-    for (std::size_t k = 0; k < edges_.a.size(); ++k, u += 3) {
-      const double qk = q[static_cast<Eigen::Index>(k)];
+    for (int k = 0; k < edges_.count(); ++k, u += 3) {
+      const double qk = q[k];
       double *ra = r.data() + 3 * edges_.a[k], *rb = r.data() + 3 * edges_.b[k];
       for (int i = 0; i < 3; ++i) {
         ra[i] += qk * u[i];
@@ -94,9 +94,8 @@ class ProjectedCg final : public KktSolver {
   // y = (M + H) p.
   void apply_hessian(const Positions& p, Positions& y) const {
     y = p * mass_.asDiagonal();
-    for (std::size_t k = 0; k < edges_.a.size(); ++k) {
-      const Eigen::Vector3d pull =
-          curvature_[static_cast<Eigen::Index>(k)] * (p.col(edges_.b[k]) - p.col(edges_.a[k]));
+    for (int k = 0; k < edges_.count(); ++k) {
+      const Eigen::Vector3d pull = curvature_[k] * (p.col(edges_.b[k]) - p.col(edges_.a[k]));
       y.col(edges_.a[k]) -= pull;
       y.col(edges_.b[k]) += pull;
     }

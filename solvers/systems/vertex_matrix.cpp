@@ -22,9 +22,8 @@ VertexMatrix::VertexMatrix(const Problem& problem, const Pairs& coupled, std::st
     return pairs;
   };
   Pairs pairs = couplings_in(free);
-  const bool chains = std::all_of(pairs.begin(), pairs.end(), [](const auto& pair) {
-    return std::abs(pair.first - pair.second) == 1;
-  });
+  const bool chains = std::ranges::all_of(
+      pairs, [](const auto& pair) { return std::abs(pair.first - pair.second) == 1; });
   // Instructions of a second of implicit springs, in 1e6: on the chain of 80, block_tridiagonal 23,
   // multifrontal 54, cholmod_simplicial 79; on the drape of 21 x 21, multifrontal 3400,
   // cholmod_supernodal 5100, cholmod_simplicial 10000.

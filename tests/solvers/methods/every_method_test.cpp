@@ -246,12 +246,8 @@ TEST_P(EveryMethod, LetsVerticesWithoutEdgesFall) {
   for (const SettingInfo& info : row.settings) {
     for (const char* word : info.choices) variants.push_back({{info.name, std::string(word)}});
   }
-  const std::pair<int, std::vector<int>> meshes[] = {// vertices, and which are pinned
-                                                     {1, {}},
-                                                     {1, {0}},
-                                                     {3, {}},
-                                                     {3, {0, 1, 2}},
-                                                     {3, {1}}};
+  const std::pair<int, std::vector<int>> meshes[] = {
+      {1, {}}, {1, {0}}, {3, {}}, {3, {0, 1, 2}}, {3, {1}}};  // vertices, and which are pinned
   for (const Settings& settings : variants) {
     for (const auto& [vertices, pinned] : meshes) {
       SCOPED_TRACE(settings.empty() ? "" : std::get<std::string>(settings.begin()->second));

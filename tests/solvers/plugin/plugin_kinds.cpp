@@ -39,21 +39,17 @@ struct AtBothEnds {
 } const at_both_ends;
 
 struct Nothing final : VelocityFilter {
+  Nothing(const Problem&, const BackendOptions&) {}
   StepResult apply(const Positions&, double, Iterate, WorkCounters&) override {
     while (is("hangs")) pause();
     return {};
   }
 };
 
-std::unique_ptr<Stepper> make_nothing(std::shared_ptr<const Problem> problem,
-                                      const BackendOptions& /*options*/) {
-  return std::make_unique<FilterStepper>(std::move(problem), std::make_unique<Nothing>());
-}
-
 class Repeated final : public VelocityFilter {
  public:
-  Repeated(const Problem& problem, double strain_limit)
-      : inner_(make_velocity_filter("fast_projection", problem, {strain_limit})) {}
+  Repeated(const Problem& problem, const BackendOptions& options)
+      : inner_(make_velocity_filter("fast_projection", problem, {options.strain_limit})) {}
 
   StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override {
     print_if_loud();
@@ -71,9 +67,10 @@ class Repeated final : public VelocityFilter {
   WorkCounters not_counted_;
 };
 
-std::unique_ptr<Stepper> make_repeated(std::shared_ptr<const Problem> problem,
-                                       const BackendOptions& options) {
-  auto filter = std::make_unique<Repeated>(*problem, options.strain_limit);
+template <class Filter>
+std::unique_ptr<Stepper> make(std::shared_ptr<const Problem> problem,
+                              const BackendOptions& options) {
+  auto filter = std::make_unique<Filter>(*problem, options);
   return std::make_unique<FilterStepper>(std::move(problem), std::move(filter));
 }
 
@@ -81,11 +78,11 @@ Backend row() {
   const auto limit = StrainControl::strain_limit;
   for (const char* kind : {"plain", "slow", "loud", "bare"}) {
     if (!is(kind)) continue;
-    Backend sound{"sound", "fast projection once more", limit, true, {}, make_repeated};
+    Backend sound{"sound", "fast projection once more", limit, true, {}, make<Repeated>};
     if (is("bare")) sound.takes_shear = sound.takes_collider = false;
     return sound;
   }
-  return {is("taken_name") ? "shake" : "misfit", "does nothing", limit, true, {}, make_nothing};
+  return {is("taken_name") ? "shake" : "misfit", "does nothing", limit, true, {}, make<Nothing>};
 }
 
 }  // namespace

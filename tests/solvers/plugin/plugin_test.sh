@@ -111,7 +111,7 @@ sound() { printf '%s' "$kinds/libplugin_$1.so"; }
 import json
 points = [p for p in json.load(open("bare.json"))["points"] if p["solver"] == "sound"]
 assert any(p["best"] for p in points if p["scene"] == "chain"), points
-assert not any(p["scene"] == "drape" for p in points), "a suite that names no solvers leaves out who does not take its scene"
+assert not any(p["scene"] == "drape" for p in points), "a suite that names no solvers leaves out those that do not take its scene"
 PYTHON
 "$bench" --plugin "$(sound bare)" check --solver sound --quick >check.txt 2>&1
 code=$?

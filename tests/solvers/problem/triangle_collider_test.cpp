@@ -96,8 +96,8 @@ TEST(TriangleCollider, PushOutMovesWhatIsInsideToTheSurfaceWhateverTheFriction) 
       for (Vector3d& v : mesh.vertices) v = (stretch * v).eval();
       return mesh;
     };
-    const std::pair<TriangleMesh, bool> meshes[] = {// convex or not
-                                                    {ellipsoid(0), true},
+    // And whether they are convex.
+    const std::pair<TriangleMesh, bool> meshes[] = {{ellipsoid(0), true},
                                                     {ellipsoid(1), true},
                                                     {ellipsoid(3), true},
                                                     {spiky(random, 2), false}};

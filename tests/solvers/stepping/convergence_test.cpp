@@ -40,8 +40,8 @@ Positions pendulum_at(double time) {
   return pendulum.positions();
 }
 
-void run(Stepper& stepper, State& state, double h, double duration = stretch) {
-  for (int i = 0; i < std::lround(duration / h); ++i) ASSERT_TRUE(stepper.advance(state, h));
+void run(Stepper& stepper, State& state, double h) {
+  for (int i = 0; i < std::lround(stretch / h); ++i) ASSERT_TRUE(stepper.advance(state, h));
 }
 
 using Made = std::unique_ptr<Stepper>;
@@ -127,29 +127,6 @@ INSTANTIATE_TEST_SUITE_P(Pairs, PairOrder,
                          })),
                          inextensible::names::contestant_name);
 
-double energy_after(const Scene& scene, const char* solver, double h, double duration,
-                    double limit = tight, const Settings& settings = {}) {
-  State state = scene.start;
-  run(*make_stepper(solver, scene.problem, {limit, 1, settings}), state, h, duration);
-  return total_energy(*scene.problem, state);
-}
-
-// Over one second the implicit methods lose energy, less at smaller steps; RATTLE does not drift.
-TEST(Energy, IsLostByImplicitMethodsInProportionToTheStepAndKeptByRattle) {
-  const Scene scene = short_chain();
-  const auto drift = [&](const char* solver, double h) {
-    return energy_after(scene, solver, h, 1) / 9.81;
-  };
-  for (const char* solver : {"fast_projection", "fast_projection@bdf2"}) {
-    const double coarse = drift(solver, 1.0 / 500), fine = drift(solver, 1.0 / 2000);
-    EXPECT_LT(coarse, 0) << solver;
-    EXPECT_LT(std::abs(fine), 0.5 * std::abs(coarse)) << solver;
-  }
-  const double lost = drift("fast_projection", 1.0 / 2000);
-  EXPECT_LT(std::abs(drift("fast_projection@bdf2", 1.0 / 2000)), 0.2 * std::abs(lost));
-  EXPECT_LT(std::abs(drift("rattle", 1.0 / 2000)), 0.02 * std::abs(lost));
-}
-
 // Slack within the limit builds up in steps without a correction. Taken back all at once it is a
 // blow; what lies beyond most of the limit is a small one.
 TEST(Energy, IsNotGainedWhereOnlyStrainNearTheLimitIsTakenBack) {
@@ -177,7 +154,9 @@ TEST(Energy, OfATurningNetIsKeptByDirectionsOfTheMiddle) {
   const Scene scene = testing::build("spinning_net", {{"n", 7}});
   const double start = total_energy(*scene.problem, scene.start);
   const auto lost = [&](const char* solver, const Settings& settings, double h) {
-    return 1 - energy_after(scene, solver, h, 0.32, 1e-9, settings) / start;
+    State state = scene.start;
+    run(*make_stepper(solver, scene.problem, {1e-9, 1, settings}), state, h);
+    return 1 - total_energy(*scene.problem, state) / start;
   };
   const Settings conserving{{"spectral_radius", 1.0}, {"target", 0.0}};
   std::vector<double> steps, errors;
@@ -213,21 +192,22 @@ TEST(Bdf2, IsExactInFreeFallWhateverTheSteps) {
     exact.row(1).array() -= 0.5 * 9.81 * t * t;
     EXPECT_LT((state.x - exact).cwiseAbs().maxCoeff(), 1e-14) << "t = " << t;
   }
-  EXPECT_EQ(stepper.restarts(), 2);  // the first step, and the growth from 0.01 to 0.03
 }
 
-TEST(Bdf2, StartsAnewFromAStateThatIsNotItsOwn) {
+TEST(Bdf2, RestartsFromAStateThatIsNotItsOwnAndInAStepGrownMoreThanTwofold) {
   const auto problem = free_edge();
-  auto used = bdf2(problem), fresh = bdf2(problem);
-  State state = inextensible::testing::stretched_edge(1);
-  state.v(1, 1) = 4;  // spins
-  for (int i = 0; i < 3; ++i) ASSERT_TRUE(used.advance(state, 0.01));
-  state.v *= 0.5;
-  State other = state;
-  ASSERT_TRUE(used.advance(state, 0.01));
-  ASSERT_TRUE(fresh.advance(other, 0.01));
-  EXPECT_EQ(used.restarts(), 2);
-  EXPECT_TRUE(state.x == other.x && state.v == other.v);
+  for (const auto& [slowed, h, restarts] :
+       {std::tuple(0.5, 0.01, true), std::tuple(1.0, 0.03, true), std::tuple(1.0, 0.02, false)}) {
+    auto used = bdf2(problem), fresh = bdf2(problem);
+    State state = inextensible::testing::stretched_edge(1);
+    state.v(1, 1) = 4;  // spins
+    for (int i = 0; i < 3; ++i) ASSERT_TRUE(used.advance(state, 0.01));
+    state.v *= slowed;
+    State other = state;
+    ASSERT_TRUE(used.advance(state, h));
+    ASSERT_TRUE(fresh.advance(other, h));
+    EXPECT_EQ(state.x == other.x && state.v == other.v, restarts);
+  }
 }
 
 // A step of another size keeps the order: steps alternate between h and 1.5 h.
@@ -241,7 +221,6 @@ TEST(Bdf2, KeepsItsOrderWhenTheStepChanges) {
     for (int i = 0; state.time < stretch - 1e-9; ++i)
       ASSERT_TRUE(stepper.advance(state, i % 2 == 0 ? h : 1.5 * h));
     ASSERT_NEAR(state.time, stretch, 1e-9);
-    EXPECT_EQ(stepper.restarts(), 1);
     steps.push_back(h);
     errors.push_back(rms_distance(scene, state.x, exact));
   }
