@@ -118,6 +118,17 @@ bench "${tiny[@]}" --out old.json >/dev/null 2>err.txt
 makes old.json "${tiny[@]}" --force
 cmp -s old.json kept.json && fail "--force did not replace it"
 
+# ---- Standard streams that are closed or full ----
+bench "${tiny[@]}" --out closed.json >/dev/null 2>&- || fail "stderr closed: exit $?"
+holds 'assert read("closed.json")["complete"]'
+bench list >/dev/full 2>err.txt
+[[ $? == 1 ]] && grep -q "cannot write to 'standard output'" err.txt || fail "a full standard output: $(cat err.txt)"
+bench list >&- 2>err.txt
+[[ $? == 1 ]] || fail "a closed standard output goes unnoticed"
+bench "${tiny[@]}" --out=-dash.json >/dev/null 2>&1 && [[ -f ./-dash.json ]] || fail "a name that begins with -"
+
+((SANITIZED)) && finish  # what follows takes minutes with sanitizers, and the tests of its folders run there
+
 # ---- Other verbs ----
 # The recommended solver keeps strain and error.
 bench choose --scene chain --n 20 --limit 0.01 --error 0.05 --solver 'rattle|fast_projection' --seconds 20 >choice.txt 2>/dev/null || fail "choose"
@@ -162,15 +173,6 @@ assert len(before) > 10 and {**before, ("chain", "icd"): found} == after, before
 # Known answers can be shown.
 makes known.json answers --answer net_place --solver '^fast_projection$' --no-plots
 bench show known.json | grep -q '^net_place' || fail "show of known answers names nothing"
-
-# ---- Standard streams that are closed or full ----
-bench "${tiny[@]}" --out closed.json >/dev/null 2>&- || fail "stderr closed: exit $?"
-holds 'assert read("closed.json")["complete"]'
-bench list >/dev/full 2>err.txt
-[[ $? == 1 ]] && grep -q "cannot write to 'standard output'" err.txt || fail "a full standard output: $(cat err.txt)"
-bench list >&- 2>err.txt
-[[ $? == 1 ]] || fail "a closed standard output goes unnoticed"
-bench "${tiny[@]}" --out=-dash.json >/dev/null 2>&1 && [[ -f ./-dash.json ]] || fail "a name that begins with -"
 
 # ---- Hard cases: a partial result is completed without its journal, and shards are the whole (kill -9: loses_nothing_test.sh) ----
 cases=(--sweep stability --case 'Q[1-4]' --solver 'icd|^fast_projection$|shake' --no-plots)
