@@ -9,7 +9,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <functional>
 #include <thread>
 
 #include "harness/base/child_process.h"
@@ -60,54 +59,30 @@ TEST(ChildProcess, OneThatLeavesAChildBehindDoesNotHoldUpItsParentAndTakesItAlon
       << "its parent waited for the process that it left behind";
 }
 
-// Whether a process whose child does `work` gets its answer in spite of what disturbs it meanwhile.
-bool is_answered(double timeout, const std::function<void()>& work,
-                 const std::function<void(pid_t)>& disturb) {
-  const pid_t parent = fork();
-  if (parent == 0) {
-    std::signal(SIGUSR1, [](int) {});
-    const ChildOutcome outcome = run_in_child(
-        [&](Heartbeat&) {
-          work();
-          return std::string("done");
-        },
-        {.timeout = timeout});
-    _exit(outcome.end == End::returned && outcome.text == "done" ? 0 : 1);
-  }
-  disturb(parent);
-  int status = 0;
-  return waitpid(parent, &status, 0) == parent && WIFEXITED(status) && WEXITSTATUS(status) == 0;
-}
-
 // Stopped for longer than the time-out and its grace (0.8 s), and running for less by all that a
 // busy machine may add.
 TEST(ChildProcess, TimeInWhichTheParentWasStoppedIsNotTheChilds) {
   std::array<int, 2> begun{}, finish{};
   ASSERT_EQ(pipe(begun.data()) + pipe(finish.data()), 0);
   char c = 'x';
-  const auto work = [&] {
-    if (write(begun[1], &c, 1) != 1 || read(finish[0], &c, 1) != 1) _exit(1);
-  };
-  EXPECT_TRUE(is_answered(3, work, [&](pid_t parent) {
-    ASSERT_EQ(read(begun[0], &c, 1), 1);
-    ASSERT_EQ(kill(parent, SIGSTOP), 0);
-    sleep_for(4500);
-    ASSERT_EQ(kill(parent, SIGCONT), 0);
-    sleep_for(200);  // in which it looks at its child
-    ASSERT_EQ(write(finish[1], &c, 1), 1);
-  })) << "it counted as timed out";
-}
-
-// A signal ends the parent's wait for an answer that is there, of a child that has ended.
-TEST(ChildProcess, AnAnswerIsNotLostToASignal) {
-  EXPECT_TRUE(is_answered(
-      10, [] { sleep_for(200); },
-      [](pid_t parent) {
-        sleep_for(100);
-        ASSERT_EQ(kill(parent, SIGSTOP), 0);
-        sleep_for(300);
-        ASSERT_EQ(kill(parent, SIGUSR1) + kill(parent, SIGCONT), 0);
-      }));
+  const pid_t parent = fork();
+  if (parent == 0) {
+    const auto work = [&](Heartbeat&) {
+      if (write(begun[1], &c, 1) != 1 || read(finish[0], &c, 1) != 1) _exit(1);
+      return std::string("done");
+    };
+    const ChildOutcome outcome = run_in_child(work, {.timeout = 3});
+    _exit(outcome.end == End::returned && outcome.text == "done" ? 0 : 1);
+  }
+  ASSERT_EQ(read(begun[0], &c, 1), 1);
+  ASSERT_EQ(kill(parent, SIGSTOP), 0);
+  sleep_for(4500);
+  ASSERT_EQ(kill(parent, SIGCONT), 0);
+  sleep_for(300);  // in which it looks at its child
+  ASSERT_EQ(write(finish[1], &c, 1), 1);
+  int status = 0;
+  ASSERT_EQ(waitpid(parent, &status, 0), parent);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << "it counted as timed out";
 }
 
 class Lock : public testing::Test {
