@@ -50,7 +50,7 @@ std::vector<PointSpec> read_specs(std::istream& in) {
     try {
       // A point that is typed by hand may leave these out.
       json object{{"contestant", ""}, {"settings", json::object()}, {"adaptive", false}};
-      object.update(parse_line(line, where));
+      object.update(parse_document(line, where));
       specs.push_back(spec_of(object));
     } catch (const json::exception& error) {
       throw UsageError(where + ": " + error.what());

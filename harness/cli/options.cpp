@@ -226,7 +226,7 @@ Suite edited_suite(const std::string& path, const SweepOptions& options) {
   const SceneParameters given = options.given_parameters();
   if (!given.empty() && options.scene.empty())
     throw UsageError("--set goes with --scene: of which scene is the parameter?");
-  json document = parse_commented(text, path);
+  json document = parse_document(text, path);
   if (!document.is_object() || !document.contains("sweeps") || !document["sweeps"].is_array())
     return parse_suite(text, path);  // which says what is wrong
   json& sweeps = document["sweeps"];

@@ -85,7 +85,7 @@ void append(ComparedResult& to, const json& document, const std::string& path) {
 Gate read_gate(const std::string& path) { return parse_gate(read_file(path, "gate"), path); }
 
 Gate parse_gate(const std::string& text, const std::string& path) {
-  const json document = parse_commented(text, path), nothing = json::object();
+  const json document = parse_document(text, path), nothing = json::object();
   JsonReader reader(document, "gate '" + path + "'");
   const auto part = [&](const char* key) {
     const json* value = reader.find(key);
