@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "harness/answers/answer.h"
+#include "harness/base/child_process.h"
 #include "harness/base/clock.h"
 #include "harness/base/errors.h"
 #include "harness/base/fields.h"

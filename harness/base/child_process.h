@@ -6,10 +6,11 @@
 #include <cstdint>
 #include <functional>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
-#include <type_traits>
 #include <vector>
+
+#include "harness/base/interrupt.h"
+#include "harness/base/json.h"
 
 namespace harness {
 
@@ -74,20 +75,25 @@ std::string ending(const ChildOutcome& outcome);
 // "SIGSEGV (Segmentation fault)"
 std::string signal_text(int signal);
 
-// What `read` makes of the answer; none where there is none. An answer that cannot be read (a
-// solver's counter that is not a number, say) is how the child ended: outcome.end is then `threw`.
-template <class Read>
-auto answer(ChildOutcome& outcome, const Read& read)
-    -> std::optional<std::invoke_result_t<Read, const nlohmann::json&>> {
-  if (outcome.end != ChildOutcome::End::returned) return std::nullopt;
-  try {
-    return read(nlohmann::json::parse(outcome.text));
-  } catch (const nlohmann::json::exception& error) {
-    outcome.end = ChildOutcome::End::threw;
-    outcome.text =
-        std::string("its result cannot be read, is a number not finite? ") + error.what();
-    return std::nullopt;
+// What `read` makes of the JSON that `work` returns in a child, or what `lost` makes of the way in
+// which the child ended without it. JSON that cannot be read (a solver's counter that is not a
+// number, say) counts as an exception of the child. Throws Interrupted.
+template <class Read, class Lost>
+auto in_child(const ChildLimits& limits, const std::function<nlohmann::json(Heartbeat&)>& work,
+              const Read& read, const Lost& lost) {
+  ChildOutcome child =
+      run_in_child([&](Heartbeat& heartbeat) { return compact(work(heartbeat)); }, limits);
+  if (child.end == ChildOutcome::End::interrupted) throw Interrupted();
+  if (child.end == ChildOutcome::End::returned) {
+    try {
+      return read(nlohmann::json::parse(child.text));
+    } catch (const nlohmann::json::exception& error) {
+      child.end = ChildOutcome::End::threw;
+      child.text =
+          std::string("its result cannot be read, is a number not finite? ") + error.what();
+    }
   }
+  return lost(child);
 }
 
 }  // namespace harness

@@ -19,19 +19,21 @@ namespace harness {
 namespace {
 
 using End = ChildOutcome::End;
+using nlohmann::json;
 using std::chrono::milliseconds;
 
 void sleep_for(int ms) { std::this_thread::sleep_for(milliseconds(ms)); }
 
 TEST(ChildProcess, AnAnswerThatCannotBeReadIsHowItEnded) {
-  for (const char* text : {"{\"seconds\": null}", "no JSON", "{}", "[1"}) {
-    ChildOutcome outcome = run_in_child([text](Heartbeat&) { return std::string(text); }, {});
-    ASSERT_EQ(outcome.end, End::returned);
-    const auto seconds = answer(
-        outcome, [](const nlohmann::json& json) { return json.at("seconds").get<double>(); });
-    EXPECT_FALSE(seconds) << text;
-    EXPECT_EQ(outcome.end, End::threw) << text;
-    EXPECT_NE(ending(outcome).find("cannot be read"), std::string::npos) << ending(outcome);
+  for (const json& answer : {json({{"seconds", nullptr}}), json("a text"), json::object()}) {
+    const std::string how = in_child(
+        {}, [&answer](Heartbeat&) { return answer; },
+        [](const json& read) { return std::to_string(read.at("seconds").get<double>()); },
+        [](const ChildOutcome& outcome) {
+          EXPECT_EQ(outcome.end, End::threw);
+          return ending(outcome);
+        });
+    EXPECT_NE(how.find("cannot be read"), std::string::npos) << how;
   }
 }
 
