@@ -72,15 +72,6 @@ std::vector<std::string> JsonReader::texts(const std::string& key) {
   return result;
 }
 
-std::string JsonReader::one_of(const std::string& key, const std::string& otherwise,
-                               const std::vector<std::string>& known, const std::string& kind) {
-  const json* value = find(key);
-  if (!value) return otherwise;
-  std::string name = value->is_string() ? value->get<std::string>() : value_text(*value);
-  check_known(kind, name, known, where(key));
-  return name;
-}
-
 void JsonReader::finish() const {
   const std::vector<std::string> known(known_.begin(), known_.end());
   for (const auto& entry : object_.items()) check_known("key", entry.key(), known, where_);

@@ -45,9 +45,6 @@ class JsonReader {
   double number(const std::string& key, double otherwise, const Bounds& bounds);
   std::vector<double> numbers(const std::string& key, const Bounds& bounds);
   std::vector<std::string> texts(const std::string& key);
-  // One of `known`, or "did you mean"; `kind` is for the message.
-  std::string one_of(const std::string& key, const std::string& otherwise,
-                     const std::vector<std::string>& known, const std::string& kind);
 
   void finish() const;
 
