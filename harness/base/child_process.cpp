@@ -23,7 +23,6 @@
 #include "harness/base/clock.h"
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
-#include "harness/base/standard_streams.h"
 
 namespace harness {
 namespace {

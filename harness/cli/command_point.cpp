@@ -2,8 +2,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "harness/base/files.h"
 #include "harness/base/json.h"
-#include "harness/base/standard_streams.h"
 #include "harness/cli/command.h"
 #include "harness/points/context.h"
 #include "harness/points/point_json.h"
