@@ -28,8 +28,8 @@ namespace harness {
 namespace {
 
 constexpr double kill_after = 2;  // s after SIGTERM
-// s without a look at the child: this process did not run then (Ctrl-Z), which is not the child's
-// time.
+// A longer time between two looks at the child, s: this process was stopped (Ctrl-Z), and the child
+// is not charged for it.
 constexpr double stopped_for = 1;
 constexpr char returned_mark = 'r', threw_mark = 'x';
 
@@ -55,7 +55,7 @@ class Child {
     }
     if (process_ > 0) return;
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() != parent) _exit(127);  // it died before that
+    if (getppid() != parent) _exit(127);  // the parent died first
     restore();
     work();
     _exit(127);
@@ -105,7 +105,7 @@ std::unique_ptr<Heartbeat, Unmap> shared_heartbeat() {
   return std::unique_ptr<Heartbeat, Unmap>(new (place) Heartbeat);
 }
 
-// Processes that the kernel has killed for lack of memory, ever; 0 where it does not tell.
+// Processes that the kernel has killed for lack of memory since it started; 0 if unknown.
 long out_of_memory_kills() {
   std::ifstream statistics("/proc/vmstat");
   std::string key;
@@ -120,7 +120,7 @@ void set_limit(int resource, double bytes) {
   setrlimit(resource, &limit);
 }
 
-// The child's part; its answer goes through the file alone.
+// Runs in the child. Nothing but its answer goes into the file.
 void answer_in(const OpenFile& file, const std::function<std::string(Heartbeat&)>& work,
                Heartbeat& heartbeat, double memory) {
   setpgid(0, 0);  // so that what it starts can be found
@@ -140,7 +140,7 @@ void answer_in(const OpenFile& file, const std::function<std::string(Heartbeat&)
   _exit(written ? 0 : 1);  // no destructors: the parent's objects are not ours
 }
 
-// Waits until the child ends, and sees to it that it does.
+// Waits for the child, and ends it if it must not go on.
 void attend(Child& child, Heartbeat& heartbeat, const ChildLimits& limits, ChildOutcome& outcome) {
   const double grace = 0.5 + 0.1 * limits.timeout;
   double terminated = 0;

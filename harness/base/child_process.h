@@ -27,7 +27,7 @@ struct Heartbeat {
 struct ChildLimits {
   double timeout = 60;                          // s from Heartbeat::begin on
   double memory = 0;                            // bytes of address space; 0: no limit
-  std::function<bool()> interrupted = nullptr;  // asked some times a second
+  std::function<bool()> interrupted = nullptr;  // polled a few times a second
 };
 
 struct ChildOutcome {
@@ -36,16 +36,16 @@ struct ChildOutcome {
   std::string text;  // what the work returned, or what() of what it threw
   int code = 0;      // exit code, or the signal that ended it
   double peak_rss_bytes = 0;
-  bool out_of_memory = false;  // the kernel's out-of-memory killer was at work meanwhile
+  bool out_of_memory = false;  // the kernel's out-of-memory killer was active
   std::int64_t step = -1;      // the heartbeat's last
   double time = 0;
   int part = 0;
 };
 
-// Runs work in a forked child. One that outlives its time-out (with a little grace: work that can,
-// ends itself) gets SIGTERM, and SIGKILL two seconds later; it dies with its parent too, and
-// ignores SIGINT, which is for the parent. After an interruption no child is made. Throws
-// std::runtime_error only if no child can be made. Not for programs with threads.
+// Runs work in a forked child. One that outlives its time-out, plus a little grace in which the
+// work may end itself, gets SIGTERM, and SIGKILL two seconds later. It dies with its parent, and
+// ignores SIGINT, which is meant for the parent. After an interruption no child is started. Throws
+// std::runtime_error only if no child can be started. Not for programs with threads.
 ChildOutcome run_in_child(const std::function<std::string(Heartbeat&)>& work,
                           const ChildLimits& limits);
 
@@ -69,7 +69,7 @@ struct ProgramResult {
 ProgramResult run_program(const std::vector<std::string>& words, double timeout,
                           const std::string& input = "");
 
-// What became of a child that ended by itself, or was ended by others, without a result.
+// How a child ended that returned no result.
 std::string ending(const ChildOutcome& outcome);
 
 // "SIGSEGV (Segmentation fault)"

@@ -239,7 +239,7 @@ pid_t lock_holder(int file) {
 void open_standard_streams() {
   for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor) {
     if (fcntl(descriptor, F_GETFD) != -1 || errno != EBADF) continue;
-    // The lowest free number is this one. The other way round than it is used, so that use fails.
+    // The lowest free number is this one. It is opened in the wrong direction, so that use fails.
     const int opened = open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY);
     if (opened != descriptor) _exit(1);  // no way to say why
   }
@@ -268,9 +268,7 @@ void send_output_to_error() {
 }
 
 OutputToError::OutputToError() : output_(fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3)) {
-  if (!output_)
-    throw std::runtime_error(std::string("standard output: no descriptor left: ") +
-                             std::strerror(errno));
+  if (!output_) throw FileError("standard output", "redirect");
   send_output_to_error();
 }
 

@@ -51,7 +51,7 @@ inline void print_aligned(std::ostream& out, const Table& table) {
   }
 }
 
-// The different values of key(item), in order of first appearance.
+// The distinct values of key(item), in order of first appearance.
 template <class Items, class Key>
 auto in_order(const Items& items, Key key) {
   std::vector<std::decay_t<decltype(key(*items.begin()))>> keys;

@@ -42,8 +42,8 @@ void add_benchmarks(json& list, const PointResult& point, int family) {
   }
 }
 
-// Where a point stands in a comparison: everything but its contestant and the step, which the best
-// ones choose.
+// A point's place in a comparison: everything but its contestant and the step, which best points
+// choose.
 std::string place_of(const PointSpec& spec) {
   PointSpec place = spec;
   place.contestant = place.solver = "";
