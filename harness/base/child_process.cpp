@@ -149,7 +149,7 @@ void attend(Child& child, Heartbeat& heartbeat, const ChildLimits& limits, Child
     terminated = now();
     kill(child.id(), SIGTERM);
   };
-  for (double last = heartbeat.begin; !child.ended();) {
+  for (double last = now(); !child.ended();) {
     const double away = now() - last;
     last += away;
     if (away > stopped_for) heartbeat.begin = heartbeat.begin + away;
