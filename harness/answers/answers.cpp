@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "harness/answers/answer.h"
+#include "harness/base/child_process.h"
 #include "harness/base/clock.h"
 #include "harness/base/errors.h"
 #include "harness/base/fields.h"
@@ -79,7 +80,7 @@ std::span<const KnownAnswer> known_answers() {
   static const std::vector<KnownAnswer> table = [] {
     const std::string path = source_path("configs/answers.json");
     std::vector<KnownAnswer> all;
-    for (const json& entry : parse_commented(read_file(path, "file of known answers"), path))
+    for (const json& entry : parse_document(read_file(path, "file of known answers"), path))
       all.push_back(known_answer_of(entry));
     return all;
   }();

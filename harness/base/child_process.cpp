@@ -23,23 +23,74 @@
 #include "harness/base/clock.h"
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
-#include "harness/base/standard_streams.h"
 
 namespace harness {
 namespace {
 
-constexpr int poll_interval = 50;  // ms
-constexpr double kill_after = 2;   // s after SIGTERM
-// s without a look at the child: this process did not run then (Ctrl-Z), which is not the child's
-// time.
+constexpr double kill_after = 2;  // s after SIGTERM
+// A longer time between two looks at the child, s: this process was stopped (Ctrl-Z), and the child
+// is not charged for it.
 constexpr double stopped_for = 1;
 constexpr char returned_mark = 'r', threw_mark = 'x';
 
 double now() { return since({}); }
 
-[[noreturn]] void fail(const char* what) {
-  throw std::runtime_error(std::string("cannot run a point in a child process: ") + what + ": " +
-                           std::strerror(errno));
+// A child that ends with this process at the latest. SIGCHLD is blocked while this lives, so that
+// nothing polls beside a measurement, and a wait returns as soon as the child ends or another
+// signal comes.
+class Child {
+ public:
+  // work: in the child, with the signals as they were; it must not return. Throws
+  // std::runtime_error if no process can be made.
+  explicit Child(const std::function<void()>& work) {
+    sigemptyset(&child_ended_);
+    sigaddset(&child_ended_, SIGCHLD);
+    sigprocmask(SIG_BLOCK, &child_ended_, &before_);
+    const pid_t parent = getpid();
+    process_ = fork();
+    if (process_ < 0) {
+      const int reason = errno;
+      restore();
+      throw std::runtime_error(std::string("no process: ") + std::strerror(reason));
+    }
+    if (process_ > 0) return;
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != parent) _exit(127);  // the parent died first
+    restore();
+    work();
+    _exit(127);
+  }
+  ~Child() { restore(); }
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+
+  // Whether it has ended; if not, after at most a fifth of a second.
+  bool ended() {
+    if (wait4(process_, &status_, WNOHANG, &usage_) != 0) return true;
+    constexpr timespec look_again{0, 200'000'000};
+    sigtimedwait(&child_ended_, nullptr, &look_again);
+    return false;
+  }
+  int status() const { return status_; }  // as of wait4, once it has ended
+  const rusage& usage() const { return usage_; }
+  pid_t id() const { return process_; }
+
+ private:
+  void restore() const { sigprocmask(SIG_SETMASK, &before_, nullptr); }
+
+  sigset_t child_ended_, before_;
+  pid_t process_;
+  int status_ = 0;
+  rusage usage_{};
+};
+
+// Files without a name instead of pipes: nothing can block, however much is written and whoever
+// still has the file open.
+OpenFile nameless_file(const std::string& text = "") {
+  OpenFile file(memfd_create("bench", MFD_CLOEXEC));
+  if (!file || !write_whole(file.get(), text) || lseek(file.get(), 0, SEEK_SET) != 0)
+    throw std::runtime_error(std::string("no temporary file: ") + std::strerror(errno));
+  return file;
 }
 
 struct Unmap {
@@ -49,11 +100,12 @@ struct Unmap {
 std::unique_ptr<Heartbeat, Unmap> shared_heartbeat() {
   void* place =
       mmap(nullptr, sizeof(Heartbeat), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-  if (place == MAP_FAILED) fail("mmap");
+  if (place == MAP_FAILED)
+    throw std::runtime_error(std::string("no shared memory: ") + std::strerror(errno));
   return std::unique_ptr<Heartbeat, Unmap>(new (place) Heartbeat);
 }
 
-// Processes that the kernel has killed for lack of memory, ever; 0 where it does not tell.
+// Processes that the kernel has killed for lack of memory since it started; 0 if unknown.
 long out_of_memory_kills() {
   std::ifstream statistics("/proc/vmstat");
   std::string key;
@@ -68,14 +120,13 @@ void set_limit(int resource, double bytes) {
   setrlimit(resource, &limit);
 }
 
-[[noreturn]] void be_child(const std::function<std::string(Heartbeat&)>& work, Heartbeat& heartbeat,
-                           double memory, pid_t parent, int pipe) {
+// Runs in the child. Nothing but its answer goes into the file.
+void answer_in(const OpenFile& file, const std::function<std::string(Heartbeat&)>& work,
+               Heartbeat& heartbeat, double memory) {
   setpgid(0, 0);  // so that what it starts can be found
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGTERM, SIG_DFL);
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(1);  // it died before that
-  send_output_to_error();             // its answer goes through the pipe alone
+  send_output_to_error();
   set_limit(RLIMIT_CORE, 0);
   if (memory > 0) set_limit(RLIMIT_AS, memory);
   std::string text;
@@ -84,46 +135,26 @@ void set_limit(int resource, double bytes) {
   } catch (const std::exception& error) {
     text = threw_mark + std::string(error.what());
   }
-  write_whole(pipe, text);  // or the parent is gone
+  const bool written = write_whole(file.get(), text);
   std::fflush(stdout);
-  _exit(0);  // no destructors: the parent's objects are not ours
+  _exit(written ? 0 : 1);  // no destructors: the parent's objects are not ours
 }
 
-bool has_ended(pid_t child) {
-  siginfo_t info{};
-  return waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
-         info.si_pid == child;
-}
-
-// Reads until the child closes its end or ends (it may have children of its own that keep the pipe
-// open), and sees to it that it does.
-void attend(pid_t child, int pipe, Heartbeat& heartbeat, const ChildLimits& limits,
-            ChildOutcome& outcome) {
+// Waits for the child, and ends it if it must not go on.
+void attend(Child& child, Heartbeat& heartbeat, const ChildLimits& limits, ChildOutcome& outcome) {
   const double grace = 0.5 + 0.1 * limits.timeout;
   double terminated = 0;
   const auto terminate = [&](ChildOutcome::End why) {
     outcome.end = why;
     terminated = now();
-    kill(child, SIGTERM);
+    kill(child.id(), SIGTERM);
   };
-  std::array<char, 65536> buffer{};
-  for (double last = heartbeat.begin;;) {
-    // Asked first: what it wrote before it ended is in the pipe then, and poll sees it.
-    const bool ended = has_ended(child);
-    pollfd ready{pipe, POLLIN, 0};
-    const int count_ready = poll(&ready, 1, ended ? 0 : poll_interval);  // -1: a signal
+  for (double last = now(); !child.ended();) {
     const double away = now() - last;
     last += away;
     if (away > stopped_for) heartbeat.begin = heartbeat.begin + away;
-    if (count_ready > 0) {
-      const ssize_t count = read(pipe, buffer.data(), buffer.size());
-      if (count == 0) return;
-      if (count > 0) outcome.text.append(buffer.data(), count);
-      continue;
-    }
-    if (ended && count_ready == 0) return;
     if (terminated > 0) {
-      if (now() > terminated + kill_after) kill(child, SIGKILL);
+      if (now() > terminated + kill_after) kill(child.id(), SIGKILL);
     } else if (limits.interrupted && limits.interrupted()) {
       terminate(ChildOutcome::End::interrupted);
     } else if (now() > heartbeat.begin + limits.timeout + grace) {
@@ -157,8 +188,7 @@ std::string signal_text(int signal) {
 
 ChildOutcome run_in_child(const std::function<std::string(Heartbeat&)>& work,
                           const ChildLimits& limits) {
-  // While children are attended, only those that take longer than poll_interval are interrupted: a
-  // series of short ones is here.
+  // Attending interrupts only children that last; a series of short ones is interrupted here.
   ChildOutcome outcome;
   if (limits.interrupted && limits.interrupted()) {
     outcome.end = ChildOutcome::End::interrupted;
@@ -166,28 +196,17 @@ ChildOutcome run_in_child(const std::function<std::string(Heartbeat&)>& work,
   }
   const auto heartbeat = shared_heartbeat();
   heartbeat->restart();
-  std::array<int, 2> pipe{};
-  if (pipe2(pipe.data(), O_CLOEXEC) != 0) fail("pipe");
-  OpenFile from_child(pipe[0]), to_parent(pipe[1]);
+  const OpenFile text = nameless_file();
   const long kills = out_of_memory_kills();
   std::cout.flush();  // or the child prints it as well
   std::fflush(stdout);
-  const pid_t parent = getpid();
-  const pid_t child = fork();
-  if (child < 0) fail("fork");
-  if (child == 0) {
-    from_child = OpenFile();
-    be_child(work, *heartbeat, limits.memory, parent, to_parent.get());
-  }
-  setpgid(child, child);  // whichever process runs first
-  to_parent = OpenFile();
-  attend(child, from_child.get(), *heartbeat, limits, outcome);
-  int status = 0;
-  rusage usage{};
-  while (wait4(child, &status, 0, &usage) < 0 && errno == EINTR) {
-  }
-  kill(-child, SIGKILL);  // what it has started and left behind
-  outcome.peak_rss_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
+  Child child([&] { answer_in(text, work, *heartbeat, limits.memory); });
+  setpgid(child.id(), child.id());  // whichever process runs first
+  attend(child, *heartbeat, limits, outcome);
+  kill(-child.id(), SIGKILL);  // what it has started and left behind
+  const int status = child.status();
+  outcome.peak_rss_bytes = 1024.0 * static_cast<double>(child.usage().ru_maxrss);
+  outcome.text = read_whole(text.get());
   outcome.step = heartbeat->step;
   outcome.time = heartbeat->time;
   outcome.part = heartbeat->part;
@@ -213,67 +232,6 @@ std::string ending(const ChildOutcome& outcome) {
   return outcome.text;  // of the exception
 }
 
-// ---- Children that run this program's own work to its end, or another program ----
-
-namespace {
-
-// A child that ends with this process at the latest. SIGCHLD is blocked while this lives, so that
-// nothing polls beside a measurement, and a wait returns as soon as the child ends or another
-// signal comes.
-class Child {
- public:
-  // work: in the child, with the signals as they were; it must not return. Throws
-  // std::runtime_error if no process can be made.
-  explicit Child(const std::function<void()>& work) {
-    sigemptyset(&child_ended_);
-    sigaddset(&child_ended_, SIGCHLD);
-    sigprocmask(SIG_BLOCK, &child_ended_, &before_);
-    const pid_t parent = getpid();
-    process_ = fork();
-    if (process_ < 0) {
-      const int reason = errno;
-      restore();
-      throw std::runtime_error(std::string("no process: ") + std::strerror(reason));
-    }
-    if (process_ > 0) return;
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() != parent) _exit(127);  // it died before that
-    restore();
-    work();
-    _exit(127);
-  }
-  ~Child() { restore(); }
-  Child(const Child&) = delete;
-  Child& operator=(const Child&) = delete;
-
-  // Whether it has ended; if not, after at most a fifth of a second.
-  bool ended() {
-    if (waitpid(process_, &status_, WNOHANG) != 0) return true;
-    constexpr timespec look_again{0, 200'000'000};
-    sigtimedwait(&child_ended_, nullptr, &look_again);
-    return false;
-  }
-  int status() const { return status_; }  // as of waitpid, once it has ended
-  void send(int signal) const { kill(process_, signal); }
-
- private:
-  void restore() const { sigprocmask(SIG_SETMASK, &before_, nullptr); }
-
-  sigset_t child_ended_, before_;
-  pid_t process_;
-  int status_ = 0;
-};
-
-// Files without a name instead of pipes: nothing can block, however much is written.
-OpenFile nameless_file(const std::string& text = "") {
-  OpenFile file(memfd_create("bench", MFD_CLOEXEC));
-  if (!file || !write_whole(file.get(), text) || lseek(file.get(), 0, SEEK_SET) != 0)
-    throw std::runtime_error(std::string("no temporary file: ") + std::strerror(errno));
-  return file;
-}
-
-}  // namespace
-
 int supervised(const std::function<int()>& work) {
   constexpr double patience = 0.7;  // s, for a child that was asked to end
   std::cout.flush();
@@ -291,9 +249,9 @@ int supervised(const std::function<int()>& work) {
     if (!asked) {
       asked = true;
       when = Clock::now();
-      child.send(SIGTERM);
+      kill(child.id(), SIGTERM);
     } else if (since(when) > patience) {
-      child.send(SIGKILL);
+      kill(child.id(), SIGKILL);
     }
   }
   remove_left_folders();
@@ -333,7 +291,7 @@ ProgramResult run_program(const std::vector<std::string>& words, double timeout,
   ProgramResult result;
   for (const auto start = Clock::now(); !child.ended();) {
     result.timed_out = since(start) > timeout;
-    if (result.timed_out || interrupted()) child.send(SIGKILL);
+    if (result.timed_out || interrupted()) kill(child.id(), SIGKILL);
   }
   if (interrupted()) throw Interrupted();
   const int status = child.status();

@@ -6,10 +6,11 @@
 #include <cstdint>
 #include <functional>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
-#include <type_traits>
 #include <vector>
+
+#include "harness/base/interrupt.h"
+#include "harness/base/json.h"
 
 namespace harness {
 
@@ -26,7 +27,7 @@ struct Heartbeat {
 struct ChildLimits {
   double timeout = 60;                          // s from Heartbeat::begin on
   double memory = 0;                            // bytes of address space; 0: no limit
-  std::function<bool()> interrupted = nullptr;  // asked some times a second
+  std::function<bool()> interrupted = nullptr;  // polled a few times a second
 };
 
 struct ChildOutcome {
@@ -35,16 +36,16 @@ struct ChildOutcome {
   std::string text;  // what the work returned, or what() of what it threw
   int code = 0;      // exit code, or the signal that ended it
   double peak_rss_bytes = 0;
-  bool out_of_memory = false;  // the kernel's out-of-memory killer was at work meanwhile
+  bool out_of_memory = false;  // the kernel's out-of-memory killer was active
   std::int64_t step = -1;      // the heartbeat's last
   double time = 0;
   int part = 0;
 };
 
-// Runs work in a forked child. One that outlives its time-out (with a little grace: work that can,
-// ends itself) gets SIGTERM, and SIGKILL two seconds later; it dies with its parent too, and
-// ignores SIGINT, which is for the parent. After an interruption no child is made. Throws
-// std::runtime_error only if no child can be made. Not for programs with threads.
+// Runs work in a forked child. One that outlives its time-out, plus a little grace in which the
+// work may end itself, gets SIGTERM, and SIGKILL two seconds later. It dies with its parent, and
+// ignores SIGINT, which is meant for the parent. After an interruption no child is started. Throws
+// std::runtime_error only if no child can be started. Not for programs with threads.
 ChildOutcome run_in_child(const std::function<std::string(Heartbeat&)>& work,
                           const ChildLimits& limits);
 
@@ -68,26 +69,31 @@ struct ProgramResult {
 ProgramResult run_program(const std::vector<std::string>& words, double timeout,
                           const std::string& input = "");
 
-// What became of a child that ended by itself, or was ended by others, without a result.
+// How a child ended that returned no result.
 std::string ending(const ChildOutcome& outcome);
 
 // "SIGSEGV (Segmentation fault)"
 std::string signal_text(int signal);
 
-// What `read` makes of the answer; none where there is none. An answer that cannot be read (a
-// solver's counter that is not a number, say) is how the child ended: outcome.end is then `threw`.
-template <class Read>
-auto answer(ChildOutcome& outcome, const Read& read)
-    -> std::optional<std::invoke_result_t<Read, const nlohmann::json&>> {
-  if (outcome.end != ChildOutcome::End::returned) return std::nullopt;
-  try {
-    return read(nlohmann::json::parse(outcome.text));
-  } catch (const nlohmann::json::exception& error) {
-    outcome.end = ChildOutcome::End::threw;
-    outcome.text =
-        std::string("its result cannot be read, is a number not finite? ") + error.what();
-    return std::nullopt;
+// What `read` makes of the JSON that `work` returns in a child, or what `lost` makes of the way in
+// which the child ended without it. JSON that cannot be read (a solver's counter that is not a
+// number, say) counts as an exception of the child. Throws Interrupted.
+template <class Read, class Lost>
+auto in_child(const ChildLimits& limits, const std::function<nlohmann::json(Heartbeat&)>& work,
+              const Read& read, const Lost& lost) {
+  ChildOutcome child =
+      run_in_child([&](Heartbeat& heartbeat) { return compact(work(heartbeat)); }, limits);
+  if (child.end == ChildOutcome::End::interrupted) throw Interrupted();
+  if (child.end == ChildOutcome::End::returned) {
+    try {
+      return read(nlohmann::json::parse(child.text));
+    } catch (const nlohmann::json::exception& error) {
+      child.end = ChildOutcome::End::threw;
+      child.text =
+          std::string("its result cannot be read, is a number not finite? ") + error.what();
+    }
   }
+  return lost(child);
 }
 
 }  // namespace harness

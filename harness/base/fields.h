@@ -1,4 +1,4 @@
-// A struct's fields as they stand in files: each said once, in a table beside the struct. JSON both
+// A struct's fields as files have them, each listed once in a table beside the struct. JSON both
 // ways, schemas, `bench list` and the tests that fill structs at random follow from the table.
 #pragma once
 
@@ -43,7 +43,7 @@ std::string described(const Row& row) {
   return (*row.unit ? std::string(row.unit) + ": " : std::string()) + row.meaning;
 }
 
-// null for a number that is not finite: JSON has no word for it.
+// null for a number that is not finite, which JSON cannot express.
 inline nlohmann::json number(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
 }
@@ -51,8 +51,7 @@ inline double number_of(const nlohmann::json& value) {  // NaN for null
   return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
 }
 
-// How a type stands in JSON, and what a schema says of it. Types that JSON does not know specialize
-// it.
+// How a type is written as JSON, and its schema. Types that JSON does not have specialize it.
 template <class Value>
 struct FieldCodec {
   static nlohmann::json write(const Value& value, bool nullable) {

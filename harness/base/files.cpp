@@ -1,10 +1,13 @@
 #include "harness/base/files.h"
 
 #include <fcntl.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <array>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
@@ -231,6 +234,48 @@ bool try_lock(int file) {
 pid_t lock_holder(int file) {
   flock region = whole_file();
   return fcntl(file, F_GETLK, &region) == 0 && region.l_type != F_UNLCK ? region.l_pid : 0;
+}
+
+void open_standard_streams() {
+  for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor) {
+    if (fcntl(descriptor, F_GETFD) != -1 || errno != EBADF) continue;
+    // The lowest free number is this one. It is opened in the wrong direction, so that use fails.
+    const int opened = open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+    if (opened != descriptor) _exit(1);  // no way to say why
+  }
+}
+
+std::size_t output_columns(int file) {
+  constexpr std::size_t usual = 120, least = 40;
+  winsize size{};
+  const bool known = ioctl(file, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return known ? std::max<std::size_t>(size.ws_col, least) : usual;
+}
+
+void check_standard_output() {
+  errno = 0;
+  std::cout.flush();
+  if (std::cout) return;
+  throw FileError("standard output", "write to",
+                  errno != 0 ? std::strerror(errno) : "it is closed or full");
+}
+
+// std::cout as well: it writes through stdout's buffer.
+void send_output_to_error() {
+  std::cout.flush();
+  std::fflush(stdout);
+  dup2(STDERR_FILENO, STDOUT_FILENO);
+}
+
+OutputToError::OutputToError() : output_(fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3)) {
+  if (!output_) throw FileError("standard output", "redirect");
+  send_output_to_error();
+}
+
+OutputToError::~OutputToError() {
+  std::cout.flush();
+  std::fflush(stdout);
+  dup2(output_.get(), STDOUT_FILENO);
 }
 
 bool is_installed() { return !share_folder().empty(); }

@@ -20,7 +20,7 @@ std::string check_of(const json& line) { return fnv1a(compact(line)); }
 
 // A line without its check. Throws where it does not pass.
 json checked(const std::string& text) {
-  json line = parse_line(text, "no JSON");
+  json line = parse_document(text, "it");
   const json check = line.value("check", json());
   line.erase("check");
   if (check != check_of(line)) throw UsageError("it is not as it was written");

@@ -36,11 +36,11 @@ class Journal {
   void start(const nlohmann::json& header);  // drops what is known
   void go_on(const nlohmann::json& header);  // keeps it
   const nlohmann::json& add(const std::string& key, nlohmann::json value);
-  // What is known, or else what `compute` returns, added.
+  // The known value, or what `compute` returns, which is added.
   const nlohmann::json& once(const std::string& key,
                              const std::function<nlohmann::json()>& compute);
   void forget(const std::string& key);
-  void remove();  // the output is written: nothing to go on with
+  void remove();  // the output is written: there is nothing to resume
 
  private:
   void lock(const std::string& out);

@@ -72,15 +72,6 @@ std::vector<std::string> JsonReader::texts(const std::string& key) {
   return result;
 }
 
-std::string JsonReader::one_of(const std::string& key, const std::string& otherwise,
-                               const std::vector<std::string>& known, const std::string& kind) {
-  const json* value = find(key);
-  if (!value) return otherwise;
-  std::string name = value->is_string() ? value->get<std::string>() : value_text(*value);
-  check_known(kind, name, known, where(key));
-  return name;
-}
-
 void JsonReader::finish() const {
   const std::vector<std::string> known(known_.begin(), known_.end());
   for (const auto& entry : object_.items()) check_known("key", entry.key(), known, where_);
@@ -105,48 +96,32 @@ const json& JsonReader::list(const std::string& key) {
   return *value;
 }
 
-namespace {
-
-constexpr std::size_t deepest = 64;  // ours are less than ten deep
-
-// Looks at a text before it becomes a tree: trees are taken apart by recursion, and keep the last
+// Looks at the text before it becomes a tree: trees are taken apart by recursion, and keep the last
 // of two equal keys.
-json parse(const std::string& text, const std::string& where, bool comments) {
+json parse_document(const std::string& text, const std::string& name) {
+  constexpr std::size_t deepest = 64;  // ours are less than ten deep
+  const std::string refusal = "'" + name + "' is not JSON: ";
   std::vector<std::set<std::string>> keys;  // of the objects that are open, by depth
   const auto inspect = [&](int depth, json::parse_event_t event, const json& value) {
     using Event = json::parse_event_t;
     const auto at = static_cast<std::size_t>(depth);
     if ((event == Event::object_start || event == Event::array_start) && at >= deepest)
-      throw UsageError(where + "it is nested more than " + std::to_string(deepest) + " deep");
+      throw UsageError(refusal + "it is nested more than " + std::to_string(deepest) + " deep");
     if (event == Event::object_start) {
       keys.resize(at);
       keys.emplace_back();
     } else if (event == Event::key && !keys.at(at - 1).insert(value.get<std::string>()).second) {
-      throw UsageError(where + "the key '" + shortened(value.get<std::string>(), 40) +
+      throw UsageError(refusal + "the key '" + shortened(value.get<std::string>(), 40) +
                        "' occurs twice in an object");
     }
     return false;  // nothing is kept
   };
   try {
-    std::ignore = json::parse(text, inspect, true, comments);
-    return json::parse(text, nullptr, true, comments);
+    std::ignore = json::parse(text, inspect, true, true);
+    return json::parse(text, nullptr, true, true);
   } catch (const json::exception& error) {
-    throw UsageError(where + shortened(error.what()));
+    throw UsageError(refusal + shortened(error.what()));
   }
-}
-
-}  // namespace
-
-json parse_document(const std::string& text, const std::string& path) {
-  return parse(text, "'" + path + "' is not JSON: ", false);
-}
-
-json parse_line(const std::string& text, const std::string& where) {
-  return parse(text, where + ": ", false);
-}
-
-json parse_commented(const std::string& text, const std::string& path) {
-  return parse(text, "'" + path + "' is not JSON: ", true);
 }
 
 std::string value_text(const json& value) {

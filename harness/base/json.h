@@ -45,9 +45,6 @@ class JsonReader {
   double number(const std::string& key, double otherwise, const Bounds& bounds);
   std::vector<double> numbers(const std::string& key, const Bounds& bounds);
   std::vector<std::string> texts(const std::string& key);
-  // One of `known`, or "did you mean"; `kind` is for the message.
-  std::string one_of(const std::string& key, const std::string& otherwise,
-                     const std::vector<std::string>& known, const std::string& kind);
 
   void finish() const;
 
@@ -64,12 +61,10 @@ class JsonReader {
   std::set<std::string> known_;
 };
 
-// JSON from outside; with // comments where users write it themselves. Throws UsageError, naming
-// the file, if it is none, if an object has a key twice, or if it is nested deeper than our own.
-nlohmann::json parse_document(const std::string& text, const std::string& path);
-nlohmann::json parse_commented(const std::string& text, const std::string& path);
-// A text that is no file: `where` begins the message.
-nlohmann::json parse_line(const std::string& text, const std::string& where);
+// JSON from outside, with // comments or without. name: the file, or what else the text is. Throws
+// UsageError, naming it, if it is not JSON, if an object has a key twice, or if it is nested deeper
+// than our own documents.
+nlohmann::json parse_document(const std::string& text, const std::string& name);
 
 // A value for a message: short, whatever it is.
 std::string value_text(const nlohmann::json& value);

@@ -24,24 +24,17 @@ bool Pattern::found_in(const std::string& text) const {
 }
 
 std::vector<std::string> alternatives(const std::string& expression) {
+  // An escaped character, a set, or a character. Latin-1: one byte each.
+  static const RE2 token(R"((?s)(\\.|\[(?:\\.|[^\]\\])*\]|.))", RE2::Latin1);
   std::vector<std::string> list{""};
-  int round = 0;        // open parentheses
-  bool square = false;  // inside [...]
-  for (std::size_t i = 0; i < expression.size(); ++i) {
-    const char c = expression[i];
-    if (c == '|' && round == 0 && !square) {
+  int open = 0;  // parentheses
+  re2::StringPiece rest(expression);
+  for (std::string part; RE2::Consume(&rest, token, &part);) {
+    open += part == "(" ? 1 : part == ")" ? -1 : 0;
+    if (part == "|" && open == 0) {
       list.emplace_back();
-      continue;
-    }
-    list.back() += c;
-    if (c == '\\' && i + 1 < expression.size()) {
-      list.back() += expression[++i];
-    } else if (square) {
-      square = c != ']';
-    } else if (c == '[') {
-      square = true;
     } else {
-      round += c == '(' ? 1 : c == ')' ? -1 : 0;
+      list.back() += part;
     }
   }
   return list;

@@ -25,7 +25,7 @@ class Pattern {
   std::shared_ptr<const re2::RE2> expression_;
 };
 
-// What stands between bars: "shake|icd" is two, "(a|b)c" is one.
+// The alternatives at the top level: "shake|icd" has two, "(a|b)c" is one.
 std::vector<std::string> alternatives(const std::string& expression);
 
 // Whether the whole text has this form; the expression is the program's own.

@@ -1,5 +1,5 @@
-// Small runs (hard cases, known answers, checks of a solver), each in a child process of its own,
-// what a plan of them is told, and a plan's part of a sweep on several machines (--shard).
+// What a plan of small runs (hard cases, known answers) is told, and a sweep's part on one of
+// several machines (--shard).
 #pragma once
 
 #include <cstdio>
@@ -8,10 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/child_process.h"
 #include "harness/base/errors.h"
-#include "harness/base/interrupt.h"
-#include "harness/base/json.h"
 #include "harness/base/pattern.h"
 #include "harness/base/text.h"
 
@@ -26,20 +23,6 @@ struct RunEvents {
   std::function<void(const std::string& key, std::size_t done, std::size_t all)> done =
       [](auto&&...) {};
 };
-
-// What `read` makes of the JSON that `work` returns in a child, or what `lost` makes of the way in
-// which the child ended without it. Throws Interrupted.
-template <class Read, class Lost>
-auto in_child(const ChildLimits& limits, const std::function<nlohmann::json(Heartbeat&)>& work,
-              const Read& read, const Lost& lost) {
-  ChildOutcome child =
-      run_in_child([&](Heartbeat& heartbeat) { return compact(work(heartbeat)); }, limits);
-  if (child.end == ChildOutcome::End::interrupted) throw Interrupted();
-  const auto result = answer(child, read);
-  return result ? *result : lost(child);
-}
-
-// ---- A part of a sweep, for several machines (--shard) ----
 
 // The index-th, from 1 on, of count parts.
 struct Shard {

@@ -17,11 +17,41 @@ struct Table {
   std::size_t names = 1;  // so many of the first columns hold names, which Markdown sets as code
 };
 
-void print_markdown(std::ostream& out, const Table& table);
-// Columns are as wide as their cells need; the last cell of a row may be wider than its column.
-void print_aligned(std::ostream& out, const Table& table);
+inline void print_markdown(std::ostream& out, const Table& table) {
+  const auto print_row = [&out](const std::vector<std::string>& cells, std::size_t names) {
+    out << '|';
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      out << ' ' << (i < names ? '`' + cells[i] + '`' : cells[i]) << " |";
+    out << '\n';
+  };
+  print_row(table.head, 0);
+  out << '|';
+  for (std::size_t i = 0; i < table.head.size(); ++i) out << "---|";
+  out << '\n';
+  for (const auto& row : table.rows) print_row(row, table.names);
+}
 
-// The different values of key(item), in order of first appearance.
+// Columns are as wide as their cells need; the last cell of a row may be wider than its column.
+inline void print_aligned(std::ostream& out, const Table& table) {
+  std::vector<std::vector<std::string>> rows = table.rows;
+  if (!table.head.empty()) rows.insert(rows.begin(), table.head);
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t i = 0; i + 1 < row.size(); ++i)
+      widths[i] = std::max(widths[i], row[i].size() + 2);
+  }
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      line += row[i];
+      if (i + 1 < row.size()) line.append(widths[i] - row[i].size(), ' ');
+    }
+    out << line << '\n';
+  }
+}
+
+// The distinct values of key(item), in order of first appearance.
 template <class Items, class Key>
 auto in_order(const Items& items, Key key) {
   std::vector<std::decay_t<decltype(key(*items.begin()))>> keys;

@@ -5,7 +5,7 @@
 
 namespace harness {
 
-// With that many significant digits and no trailing zeros; six are what a stream writes by default.
+// With so many significant digits and no trailing zeros; six is the default of streams.
 std::string number_text(double value, int digits = 6);
 
 // The number with so many significant digits.
@@ -18,7 +18,7 @@ std::string told_apart(double value, double other);
 // A text shortened for a message: its beginning if it is long, and always one line.
 std::string shortened(const std::string& text, std::size_t most = 120);
 
-// Lines of more than `columns` go on below, indented, from a space on; a longer word stays whole.
+// Lines of more than `columns` are broken at spaces and indented; a longer word stays whole.
 std::string fitted(const std::string& text, std::size_t columns);
 
 // "1/250" for a step of 0.004 s, "-" for none (NaN).

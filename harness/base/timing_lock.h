@@ -6,13 +6,13 @@
 
 namespace harness {
 
-// One a user and machine, in the folder of temporary files (TMPDIR, or /tmp). Held from
+// One per user and machine, in the folder of temporary files (TMPDIR, or /tmp). Held from
 // construction to destruction, and no longer than the process lives, however it ends.
 // Forked children do not hold it; programs that the process starts may go on under it.
 class TimingLock {
  public:
-  // Another one holds it: waits, with one line on stderr, or, unless `wait`, throws UsageError.
-  // Throws Interrupted.
+  // If another process holds it: waits, with one line on stderr, or, unless `wait`, throws
+  // UsageError. Throws Interrupted.
   explicit TimingLock(bool wait = true);
   ~TimingLock();
 

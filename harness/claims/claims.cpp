@@ -198,7 +198,7 @@ const std::map<std::string, claims::Judge*> judges{{"C1", claims::chain_time_ove
 const json& claim_texts() {
   static const json texts = [] {
     const std::string path = source_path("configs/claims.json");
-    return parse_commented(read_file(path, "file of claims"), path);
+    return parse_document(read_file(path, "file of claims"), path);
   }();
   return texts;
 }

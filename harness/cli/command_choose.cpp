@@ -122,27 +122,32 @@ std::shared_ptr<const Reference> reference_for(const SweepSpec& sweep, Reference
   const auto stop = [&limits] {
     return limits.interrupted() || limits.elapsed() > reference_share * limits.seconds;
   };
-  ChildOutcome outcome = run_in_child(
-      [&sweep](Heartbeat&) {
-        RouteRuns runs([](const std::string& line) { std::cerr << line << std::endl; });
-        return compact(
-            to_json(compute_reference(sweep.scene, sweep.scene_parameters, quick_finest, runs)));
-      },
-      {.timeout = limits.seconds, .interrupted = stop});
-  if (limits.interrupted()) throw Interrupted();
-  if (const auto made = answer(outcome, [](const json& document) {
-        return std::make_shared<const Reference>(reference_of(document, "the quick reference"));
-      })) {
-    references.put(*made);
-    std::cerr << reference_text(**made) << '\n';
-    return *made;
+  const auto compute = [&sweep](Heartbeat&) {
+    RouteRuns runs([](const std::string& line) { std::cerr << line << std::endl; });
+    return to_json(compute_reference(sweep.scene, sweep.scene_parameters, quick_finest, runs));
+  };
+  std::string reason;
+  try {
+    const auto made = in_child(
+        {.timeout = limits.seconds, .interrupted = stop}, compute,
+        [](const json& document) {
+          return std::make_shared<const Reference>(reference_of(document, "the quick reference"));
+        },
+        [&reason](const ChildOutcome& child) {
+          reason = ending(child);
+          return std::shared_ptr<const Reference>();
+        });
+    if (made) {
+      references.put(made);
+      std::cerr << reference_text(*made) << '\n';
+      return made;
+    }
+  } catch (const Interrupted&) {
+    if (limits.interrupted()) throw;
+    reason = "it takes more than " + number_text(100 * reference_share) + " % of --seconds " +
+             number_text(limits.seconds);
   }
-  std::cerr << "bench: no reference, so errors are unknown: "
-            << (outcome.end == ChildOutcome::End::interrupted
-                    ? "it takes more than " + number_text(100 * reference_share) +
-                          " % of --seconds " + number_text(limits.seconds)
-                    : ending(outcome))
-            << '\n';
+  std::cerr << "bench: no reference, so errors are unknown: " << reason << '\n';
   return nullptr;
 }
 

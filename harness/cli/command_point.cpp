@@ -2,8 +2,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "harness/base/files.h"
 #include "harness/base/json.h"
-#include "harness/base/standard_streams.h"
 #include "harness/cli/command.h"
 #include "harness/points/context.h"
 #include "harness/points/point_json.h"
@@ -40,7 +40,7 @@ std::vector<PointSpec> read_specs(std::istream& in) {
   for (int number = 1; std::getline(in, line); ++number) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     const std::string where = "point on line " + std::to_string(number);
-    const json given = parse_line(line, where);
+    const json given = parse_document(line, where);
     try {
       // These may be omitted from a point that is typed by hand.
       json object{{"contestant", ""}, {"settings", json::object()}, {"adaptive", false}};

@@ -6,7 +6,7 @@
 
 #include "harness/analysis/findings.h"
 #include "harness/answers/answer.h"
-#include "harness/base/standard_streams.h"
+#include "harness/base/files.h"
 #include "harness/claims/claims.h"
 #include "harness/cli/command.h"
 #include "harness/tables/tables.h"

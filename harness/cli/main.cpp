@@ -6,7 +6,7 @@
 #include <map>
 
 #include "harness/base/child_process.h"
-#include "harness/base/standard_streams.h"
+#include "harness/base/files.h"
 #include "harness/cli/command.h"
 #include "harness/compare/comparison.h"
 #include "harness/points/context.h"

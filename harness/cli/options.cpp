@@ -185,7 +185,7 @@ Suite edited_suite(const std::string& path, const SweepOptions& options) {
   const std::string text = read_file(path, "suite");
   const SceneParameters given = options.given_parameters();
   if (!given.empty() && options.scene.empty()) throw UsageError("--set goes with --scene");
-  json document = parse_commented(text, path);
+  json document = parse_document(text, path);
   if (!document.is_object() || !document.contains("sweeps") || !document["sweeps"].is_array())
     return parse_suite(text, path);  // which reports what is wrong
   json& sweeps = document["sweeps"];

@@ -17,7 +17,6 @@
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
-#include "harness/base/standard_streams.h"
 #include "harness/base/text.h"
 #include "harness/claims/claims.h"
 #include "harness/cli/command.h"

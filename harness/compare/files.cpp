@@ -85,7 +85,7 @@ void append(ComparedResult& to, const json& document, const std::string& path) {
 Gate read_gate(const std::string& path) { return parse_gate(read_file(path, "gate"), path); }
 
 Gate parse_gate(const std::string& text, const std::string& path) {
-  const json document = parse_commented(text, path), nothing = json::object();
+  const json document = parse_document(text, path), nothing = json::object();
   JsonReader reader(document, "gate '" + path + "'");
   const auto part = [&](const char* key) {
     const json* value = reader.find(key);
@@ -101,15 +101,12 @@ Gate parse_gate(const std::string& text, const std::string& path) {
   times.finish();
   JsonReader counters = part("counters");
   const std::vector<std::string> rules{"exact", "rise", "inform"};  // as CounterRule has them
-  gate.counter_rule = static_cast<CounterRule>(
-      std::ranges::find(rules, counters.one_of("rule", "exact", rules, "rule")) - rules.begin());
-  const std::vector<std::string> known = counter_names();
+  const std::string rule = counters.text("rule", "exact");
+  check_known("rule", rule, rules, counters.where("rule"));
+  gate.counter_rule = static_cast<CounterRule>(std::ranges::find(rules, rule) - rules.begin());
   gate.counters = counters.texts("names");
-  for (const std::string& name : gate.counters) {
-    if (std::ranges::count(known, name) == 0)
-      throw UsageError(counters.where("names") + ": " +
-                       unknown_name("counter", name, known).what());
-  }
+  for (const std::string& name : gate.counters)
+    check_known("counter", name, counter_names(), counters.where("names"));
   counters.finish();
   JsonReader errors = part("errors");
   if (reader.find("errors")) gate.errors.clear();

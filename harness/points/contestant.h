@@ -1,5 +1,5 @@
-// A contestant of a sweep: a solver under a name, with settings of its own. One solver may stand
-// there several times.
+// A contestant of a sweep: a solver under a name, with settings of its own. One solver may take
+// part several times.
 #pragma once
 
 #include <memory>
@@ -25,7 +25,7 @@ struct SettingsAt {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SettingsAt, resolution, limit, settings)
 
 struct Contestant {
-  std::string name;    // a-z, 0-9, _ and @; the solver's own unless it stands there more than once
+  std::string name;    // a-z, 0-9, _ and @; the solver's own unless it takes part more than once
   std::string solver;  // see `bench list solvers`
   inextensible::Settings settings = {};  // given ones only
   std::string label = "";                // in figures; empty: the solver's, or the name in words
@@ -39,7 +39,7 @@ struct Contestant {
 };
 using Contestants = std::vector<Contestant>;
 
-// The place of one, or the end.
+// The contestant of this name, or the end.
 Contestants::iterator find_contestant(Contestants& all, const std::string& name);
 std::string label_of(const Contestant& contestant);
 
@@ -51,10 +51,10 @@ Contestants read_contestants(const nlohmann::json& solvers, const std::string& w
 Contestants competitors(const SceneType& type, const SceneParameters& given);
 inextensible::Settings read_settings(const nlohmann::json& object, const std::string& where,
                                      const inextensible::Backend& backend);
-// That the solver would take them.
+// Throws unless the solver accepts them.
 void check_settings(const inextensible::Settings& settings, const std::string& where,
                     const inextensible::Backend& backend);
-// That it is made of a-z, 0-9 and _, and one @ for a method in a time stepper.
+// Throws unless it consists of a-z, 0-9 and _, and one @ at most, for a method in a time stepper.
 void check_plain_name(const std::string& name, const std::string& where);
 const inextensible::Backend& checked_backend(const std::string& name, const std::string& where);
 // where: may be empty.
@@ -62,16 +62,16 @@ std::shared_ptr<const SceneType> checked_scene(const std::string& name,
                                                const std::string& where = "");
 // A pair that makes no sense gets its reason, any other name a suggestion.
 UsageError no_solver(const std::string& name, const std::vector<std::string>& known);
-// Whether the pattern is of this contestant's or solver's name, that with its published stepper
-// included.
+// Whether the pattern matches this contestant's or solver's name, or that with its published
+// stepper.
 bool matches(const Pattern& pattern, const std::string& solver);
 
-// The way back.
+// read_contestants() reads it back.
 void to_json(nlohmann::json& to, const Contestant& contestant);
 
-// The same solver with the same settings once more, right after it, as <name>_again: how far two
-// equal ones are apart is the noise of a result. Nothing if `name` does not stand there, or its
-// double does.
+// Adds the same solver with the same settings right after it, as <name>_again: the difference
+// between two equal contestants is the noise of a result. Does nothing if `name` is absent or its
+// double is present.
 void add_double(Contestants& all, const std::string& name);
 std::string double_of(const std::string& name);
 

@@ -35,13 +35,6 @@ namespace {
 
 using nlohmann::json;
 
-std::string first_line(const std::string& path) {
-  std::ifstream file(path);
-  std::string line;
-  std::getline(file, line);
-  return line;
-}
-
 std::string cpu_field(const std::string& name) {
   std::ifstream file("/proc/cpuinfo");
   for (std::string line; std::getline(file, line);) {
@@ -121,7 +114,8 @@ json machine_context() {
   gethostname(host.data(), host.size() - 1);
   std::array<double, 3> load{};
   const bool load_known = getloadavg(load.data(), 3) == 3;
-  const std::string governor = first_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor");
+  std::string governor;
+  std::getline(std::ifstream("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor"), governor);
   const std::string commit = git("rev-parse HEAD");
   const json build = {
       {"git", commit},

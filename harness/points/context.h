@@ -1,4 +1,4 @@
-// Where and with what the numbers came about: machine, build, libraries.
+// What produced the numbers: machine, build, libraries.
 #pragma once
 
 #include <nlohmann/json.hpp>

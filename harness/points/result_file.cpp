@@ -42,19 +42,8 @@ void add_benchmarks(json& list, const PointResult& point, int family) {
   }
 }
 
-// How many samples were taken, and how many of them again.
-json retaken_samples(const std::vector<PointResult>& points) {
-  std::size_t samples = 0;
-  int retaken = 0;
-  for (const PointResult& point : points) {
-    samples += point.samples.size();
-    retaken += point.retaken;
-  }
-  return {{"samples", samples}, {"retaken", retaken}};
-}
-
-// Where a point stands in a comparison: everything but its contestant and the step, which the best
-// ones choose.
+// A point's place in a comparison: everything but its contestant and the step, which best points
+// choose.
 std::string place_of(const PointSpec& spec) {
   PointSpec place = spec;
   place.contestant = place.solver = "";
@@ -122,14 +111,6 @@ bool all_shards(const std::vector<json>& documents) {
   return found.size() == count;
 }
 
-// In words, where that is more than a result to be quoted may have; else empty.
-std::string noise_warning(const PairNoise& noise) {
-  constexpr double most = 0.06;
-  if (noise.q95 <= most) return {};
-  return "noisy: equal programs differ by " + number_text(100 * std::expm1(noise.q95), 2) +
-         " % here, more than the 6 % that a result to be quoted may have";
-}
-
 }  // namespace
 
 json result_document(json context, const Suite& suite, const std::vector<std::string>& command,
@@ -141,13 +122,16 @@ json result_document(json context, const Suite& suite, const std::vector<std::st
     context["tuned"] = {{"file", suite.tuned_file}, {"hash", suite.tuned_hash}};
   const auto noise = pair_noise(points, suite.same);
   if (noise) context["noise"] = *noise;
-  context["retaken_samples"] = retaken_samples(points);
   json list = json::array(), benchmarks = json::array();
-  int family = 0;
+  std::size_t samples = 0;
+  int family = 0, retaken = 0;
   for (const PointResult& point : points) {
+    samples += point.samples.size();
+    retaken += point.retaken;
     list.push_back(to_json(point));
     if (point.ok()) add_benchmarks(benchmarks, point, family++);
   }
+  context["retaken_samples"] = {{"samples", samples}, {"retaken", retaken}};
   json document = {{"schema", "inextensible-bench/1"},
                    {"complete", complete},
                    {"context", context},
@@ -155,8 +139,11 @@ json result_document(json context, const Suite& suite, const std::vector<std::st
                    {"points", list},
                    {"references", std::move(references)},
                    {"benchmarks", benchmarks}};
-  if (const std::string warning = noise ? noise_warning(*noise) : ""; !warning.empty())
-    document["warning"] = warning;
+  constexpr double quotable = 0.06;  // most noise of a result to be quoted
+  if (noise && noise->q95 > quotable)
+    document["warning"] = "noisy: equal programs differ by " +
+                          number_text(100 * std::expm1(noise->q95), 2) +
+                          " % here, more than the 6 % that a result to be quoted may have";
   return document;
 }
 

@@ -25,7 +25,7 @@ std::string result_text(const nlohmann::json& document);
 // false: it was made while others may have been timed, so its times mean nothing.
 bool is_timed(const nlohmann::json& document);
 
-// The kinds of documents that a reader takes.
+// The kinds of documents that a reader accepts.
 enum class ResultKinds { sweeps, answers, all };  // sweeps: stability sweeps, too
 // Throws UsageError, naming the file, for a document of another kind or one that is not as its
 // schema says.

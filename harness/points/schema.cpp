@@ -138,13 +138,7 @@ ordered_json legend(const Contestants& contestants) {
   return {{"solvers", solvers}, {"statuses", statuses}};
 }
 
-std::vector<std::string> counter_names() {
-  std::vector<std::string> names = names_of(inextensible::work_counters);
-  for_each_field(result_fields, [&names](const auto& row) {
-    if (row.traits.inside == std::string("work")) names.emplace_back(row.name);
-  });
-  return names;
-}
+std::vector<std::string> counter_names() { return work_schema().at("required"); }
 
 void check_schema(const json& document, const std::string& schema, const std::string& path) {
   const json rules = schema_document(schema);

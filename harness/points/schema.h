@@ -1,4 +1,4 @@
-// Schemas of files: what the tables of fields say is put into their definitions, the rest is
+// Schemas of files: definitions that follow from tables of fields are generated, the rest is
 // written by hand.
 #pragma once
 

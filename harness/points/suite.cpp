@@ -145,7 +145,7 @@ Contestants contestants_of(const Suite& suite) {
 Suite read_suite(const std::string& path) { return parse_suite(read_file(path, "suite"), path); }
 
 Suite parse_suite(const std::string& text, const std::string& path) {
-  const json document = parse_commented(text, path);
+  const json document = parse_document(text, path);
   JsonReader reader(document, "suite '" + path + "'");
   Suite suite;
   suite.name = reader.text("name", "unnamed");

@@ -53,8 +53,8 @@ std::vector<double> levels_of(const Suite& suite);
 // Contestants of all sweeps, each name once.
 Contestants contestants_of(const Suite& suite);
 
-// Throws UsageError, naming file, key and value, for anything that is not a suite. What "tuned" and
-// "same" say is done already: it is in the contestants.
+// Throws UsageError, naming file, key and value, for anything that is not a suite. "tuned" and
+// "same" have been applied to its contestants.
 Suite read_suite(const std::string& path);
 // The same of a text; `path` is for messages.
 Suite parse_suite(const std::string& text, const std::string& path);

@@ -78,7 +78,7 @@ const TunedEntry* Tuned::find(const std::string& kind, const std::string& solver
 }
 
 Tuned parse_tuned(const std::string& text, const std::string& file) {
-  const json document = parse_commented(text, file);
+  const json document = parse_document(text, file);
   check_schema(document, "tuned", file);
   Tuned tuned;
   tuned.file = std::filesystem::path(file).filename().string();  // results name no folders

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "harness/base/small_runs.h"
+#include "harness/base/child_process.h"
 #include "harness/base/text.h"
 #include "harness/points/point_json.h"
 #include "harness/scenes/scene.h"

@@ -11,7 +11,7 @@
 #include <utility>
 #include <variant>
 
-#include "harness/base/small_runs.h"
+#include "harness/base/child_process.h"
 #include "harness/base/text.h"
 #include "harness/judge/drive.h"
 #include "harness/judge/mechanics.h"

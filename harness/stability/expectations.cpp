@@ -44,7 +44,7 @@ const json& entries_about(const HardCase& hard_case) {
 const json& hard_cases_document() {
   static const json document = [] {
     const std::string file = "configs/hard_cases.json";
-    json read = parse_commented(read_file(source_path(file), "file of hard cases"), file);
+    json read = parse_document(read_file(source_path(file), "file of hard cases"), file);
     check_schema(read, "hard_cases", file);
     return read;
   }();

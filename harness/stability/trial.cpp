@@ -5,8 +5,8 @@
 #include <utility>
 #include <variant>
 
+#include "harness/base/child_process.h"
 #include "harness/base/clock.h"
-#include "harness/base/small_runs.h"
 #include "harness/base/text.h"
 #include "harness/points/point_json.h"
 #include "solvers/problem/forces.h"

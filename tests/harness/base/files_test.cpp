@@ -1,4 +1,4 @@
-// Where output goes, and what stays as it was: links, devices, pipes, other people's files.
+// Where output goes, and what stays unchanged: links, devices, pipes, the user's own files.
 #include "harness/base/files.h"
 
 #include <fcntl.h>

@@ -1,5 +1,5 @@
 // Children that misbehave end, and their parents do not. One process at a time takes times; the
-// lock ends with its process, and those who are started under it go on.
+// lock ends with its process, and programs started under it go on.
 #include <gtest/gtest.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -9,7 +9,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <functional>
 #include <thread>
 
 #include "harness/base/child_process.h"
@@ -20,19 +19,21 @@ namespace harness {
 namespace {
 
 using End = ChildOutcome::End;
+using nlohmann::json;
 using std::chrono::milliseconds;
 
 void sleep_for(int ms) { std::this_thread::sleep_for(milliseconds(ms)); }
 
 TEST(ChildProcess, AnAnswerThatCannotBeReadIsHowItEnded) {
-  for (const char* text : {"{\"seconds\": null}", "no JSON", "{}", "[1"}) {
-    ChildOutcome outcome = run_in_child([text](Heartbeat&) { return std::string(text); }, {});
-    ASSERT_EQ(outcome.end, End::returned);
-    const auto seconds = answer(
-        outcome, [](const nlohmann::json& json) { return json.at("seconds").get<double>(); });
-    EXPECT_FALSE(seconds) << text;
-    EXPECT_EQ(outcome.end, End::threw) << text;
-    EXPECT_NE(ending(outcome).find("cannot be read"), std::string::npos) << ending(outcome);
+  for (const json& answer : {json({{"seconds", nullptr}}), json("a text"), json::object()}) {
+    const std::string how = in_child(
+        {}, [&answer](Heartbeat&) { return answer; },
+        [](const json& read) { return std::to_string(read.at("seconds").get<double>()); },
+        [](const ChildOutcome& outcome) {
+          EXPECT_EQ(outcome.end, End::threw);
+          return ending(outcome);
+        });
+    EXPECT_NE(how.find("cannot be read"), std::string::npos) << how;
   }
 }
 
@@ -60,54 +61,30 @@ TEST(ChildProcess, OneThatLeavesAChildBehindDoesNotHoldUpItsParentAndTakesItAlon
       << "its parent waited for the process that it left behind";
 }
 
-// Whether a process whose child does `work` gets its answer in spite of what disturbs it meanwhile.
-bool is_answered(double timeout, const std::function<void()>& work,
-                 const std::function<void(pid_t)>& disturb) {
-  const pid_t parent = fork();
-  if (parent == 0) {
-    std::signal(SIGUSR1, [](int) {});
-    const ChildOutcome outcome = run_in_child(
-        [&](Heartbeat&) {
-          work();
-          return std::string("done");
-        },
-        {.timeout = timeout});
-    _exit(outcome.end == End::returned && outcome.text == "done" ? 0 : 1);
-  }
-  disturb(parent);
-  int status = 0;
-  return waitpid(parent, &status, 0) == parent && WIFEXITED(status) && WEXITSTATUS(status) == 0;
-}
-
 // Stopped for longer than the time-out and its grace (0.8 s), and running for less by all that a
 // busy machine may add.
 TEST(ChildProcess, TimeInWhichTheParentWasStoppedIsNotTheChilds) {
   std::array<int, 2> begun{}, finish{};
   ASSERT_EQ(pipe(begun.data()) + pipe(finish.data()), 0);
   char c = 'x';
-  const auto work = [&] {
-    if (write(begun[1], &c, 1) != 1 || read(finish[0], &c, 1) != 1) _exit(1);
-  };
-  EXPECT_TRUE(is_answered(3, work, [&](pid_t parent) {
-    ASSERT_EQ(read(begun[0], &c, 1), 1);
-    ASSERT_EQ(kill(parent, SIGSTOP), 0);
-    sleep_for(4500);
-    ASSERT_EQ(kill(parent, SIGCONT), 0);
-    sleep_for(200);  // in which it looks at its child
-    ASSERT_EQ(write(finish[1], &c, 1), 1);
-  })) << "it counted as timed out";
-}
-
-// A signal ends the parent's wait for an answer that is there, of a child that has ended.
-TEST(ChildProcess, AnAnswerIsNotLostToASignal) {
-  EXPECT_TRUE(is_answered(
-      10, [] { sleep_for(200); },
-      [](pid_t parent) {
-        sleep_for(100);
-        ASSERT_EQ(kill(parent, SIGSTOP), 0);
-        sleep_for(300);
-        ASSERT_EQ(kill(parent, SIGUSR1) + kill(parent, SIGCONT), 0);
-      }));
+  const pid_t parent = fork();
+  if (parent == 0) {
+    const auto work = [&](Heartbeat&) {
+      if (write(begun[1], &c, 1) != 1 || read(finish[0], &c, 1) != 1) _exit(1);
+      return std::string("done");
+    };
+    const ChildOutcome outcome = run_in_child(work, {.timeout = 3});
+    _exit(outcome.end == End::returned && outcome.text == "done" ? 0 : 1);
+  }
+  ASSERT_EQ(read(begun[0], &c, 1), 1);
+  ASSERT_EQ(kill(parent, SIGSTOP), 0);
+  sleep_for(4500);
+  ASSERT_EQ(kill(parent, SIGCONT), 0);
+  sleep_for(300);  // in which it looks at its child
+  ASSERT_EQ(write(finish[1], &c, 1), 1);
+  int status = 0;
+  ASSERT_EQ(waitpid(parent, &status, 0), parent);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << "it counted as timed out";
 }
 
 class Lock : public testing::Test {

@@ -47,9 +47,10 @@ bool fails() {
   return true;
 }
 
+// Files without a name are memory, not on a disk.
 bool is_regular(int file) {
   struct stat status {};
-  return fstat(file, &status) == 0 && S_ISREG(status.st_mode);
+  return fstat(file, &status) == 0 && S_ISREG(status.st_mode) && status.st_nlink > 0;
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// One solver several times in a run, tuned settings, and the noise that two equal ones show.
+// One solver several times in a run, tuned settings, and the noise between two equal contestants.
 #include "harness/points/contestant.h"
 
 #include <gtest/gtest.h>
@@ -99,7 +99,7 @@ TEST(Contestants, HaveTheirOwnNamesAndSettings) {
   EXPECT_EQ(again.sweeps[0].contestants, suite.sweeps[0].contestants);
 }
 
-// What a wrong suite is told: each message names the key or value.
+// The message for a wrong suite names the key or value.
 TEST(Suite, NamesFileKeyAndValueOfWhatIsWrong) {
   const auto sweep = [](const std::string& rest, const char* everywhere = "") {
     return std::string("{") + everywhere + R"("sweeps": [{"sweep": "strain", )" +
