@@ -266,24 +266,19 @@ ParameterInfos with_cloth_parameters(const ParameterInfos& own, const ClothDefau
 Draft cloth_draft(const ClothMesh& mesh, const SceneParameters& p) {
   const auto length = [&](int a, int b) { return (mesh.vertices[a] - mesh.vertices[b]).norm(); };
   const auto held = [&](auto... vertices) { return (mesh.held[vertices] && ...); };
-  Draft draft;
+  const auto n = static_cast<int>(mesh.vertices.size());
+  Draft draft(n, p);
   inextensible::ProblemParts& parts = draft.parts;
   Scene& scene = draft.scene;
-  const auto n = static_cast<int>(mesh.vertices.size());
   const std::vector<double> area = areas(mesh);
-  scene.start.x.resize(3, n);
-  scene.start.v.setZero(3, n);
   for (int v = 0; v < n; ++v) {
     scene.start.x.col(v) = mesh.vertices[v];
     if (held(v)) parts.pinned.push_back(v);
     parts.mass.push_back(p.at("density") * area[v]);
     if (p.at("drag") > 0) parts.drag.push_back(p.at("drag") * area[v]);
   }
-  parts.gravity = {0, -p.at("gravity"), 0};
   for (const auto& [a, b] : sides_of_quads(mesh)) {
-    if (held(a, b)) continue;
-    parts.edges.push_back({a, b});
-    parts.rest_length.push_back(length(a, b));
+    if (!held(a, b)) draft.constrain(a, b, length(a, b));
   }
   if (p.at("shear") > 0) {
     inextensible::Springs springs;
@@ -314,7 +309,6 @@ Draft cloth_draft(const ClothMesh& mesh, const SceneParameters& p) {
     scene.triangles.insert(scene.triangles.end(), {{a, b, d}, {c, d, b}});
   scene.triangles.insert(scene.triangles.end(), mesh.triangles.begin(), mesh.triangles.end());
   scene.staggered = false;
-  scene.duration = p.at("duration");
   return draft;
 }
 
