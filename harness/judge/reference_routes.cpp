@@ -331,9 +331,8 @@ class ReferenceMaker {
   }
 
   Reference finished(const Path& path) {
-    std::size_t valid = 0;
-    while (valid < r_.gap.size() && r_.times[valid] <= r_.valid_until) ++valid;
-    r_.positions.assign(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(valid));
+    const auto valid = std::ranges::upper_bound(r_.times, r_.valid_until) - r_.times.begin();
+    r_.positions.assign(path.begin(), path.begin() + valid);
     if (r_.times.size() > most_samples) thin_out();
     return std::move(r_);
   }
