@@ -25,8 +25,8 @@ class Pendulum {
   // length and angle for each of one link or more; masses and lengths are positive.
   Pendulum(Links links, std::vector<double> angles);
 
-  // Integrates to `time` (s, not earlier than before) by GSL's Runge-Kutta-Prince-Dormand pair of
-  // orders 8 and 9, with this tolerance on every angle (rad) and rate (rad/s). Throws
+  // Integrates to `time` (s, not before the last call's) by GSL's Runge-Kutta-Prince-Dormand pair
+  // of orders 8 and 9, with this tolerance on every angle (rad) and rate (rad/s). Throws
   // std::runtime_error if the integrator gives up.
   void advance(double time, double tolerance);
 
