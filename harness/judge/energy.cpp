@@ -9,12 +9,6 @@
 
 namespace harness {
 
-namespace {
-
-constexpr double window_length = 0.01;  // s
-
-}  // namespace
-
 bool energy_can_only_fall(const inextensible::Problem& problem) {
   return (problem.collider() || problem.has_drag()) && !problem.body_motion();
 }
@@ -56,6 +50,7 @@ double EnergyRecord::settle(const Instant& at, double kinetic) {
     gain_step_ = at.step;
   }
   raise(drift_, std::abs(gain));
+  constexpr double window_length = 0.01;  // s
   window_.sum += gain * at.h;
   window_.length += at.h;
   if (window_.length >= window_length * (1 - 1e-9)) {

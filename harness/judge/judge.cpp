@@ -16,7 +16,6 @@ using inextensible::State;
 
 namespace {
 
-constexpr const char* no_reference = "no reference of this scene, size and parameters";
 constexpr double time_tolerance = 1e-9;  // s; states add up their steps
 
 double root_mean_square(const std::vector<double>& numbers) {
@@ -53,22 +52,18 @@ void Judge::compare(const State& state) {
     const bool inside = time < state.time - time_tolerance;
     const double part = inside ? (time - start_.time) / (state.time - start_.time) : 1;
     const Positions x = inside ? Positions((1 - part) * start_.x + part * state.x) : state.x;
-    if (next_ < reference.positions.size()) compare_positions(x);
+    if (next_ >= reference.positions.size()) continue;
+    const Positions& there = reference.positions[next_];
+    running_.error_series.push_back({time, rms_distance(scene_, x, there),
+                                     max_distance(scene_, x, there), reference.gap[next_],
+                                     reference.gap_max[next_]});
+    moved_squares_ += std::pow(rms_distance(scene_, x, scene_.start.x), 2);
+    reference_moved_squares_ += std::pow(rms_distance(scene_, there, scene_.start.x), 2);
     if (next_ + 1 == reference.positions.size() && !reference.rest_gap.empty()) {
       running_.rest_gap = reference.rest_gap;
-      running_.rest = rest_difference(scene_, x, reference.positions.back());
+      running_.rest = rest_difference(scene_, x, there);
     }
   }
-}
-
-void Judge::compare_positions(const Positions& x) {
-  const Reference& reference = *options_.reference;
-  const Positions& there = reference.positions[next_];
-  running_.error_series.push_back({reference.times[next_], rms_distance(scene_, x, there),
-                                   max_distance(scene_, x, there), reference.gap[next_],
-                                   reference.gap_max[next_]});
-  moved_squares_ += std::pow(rms_distance(scene_, x, scene_.start.x), 2);
-  reference_moved_squares_ += std::pow(rms_distance(scene_, there, scene_.start.x), 2);
 }
 
 // A run that ended before the last sample of the set has no error: others have that of all.
@@ -167,7 +162,7 @@ Measures Judge::finish() {
     if (!options_.residual_series) measures.residuals.clear();
   }
   if (!options_.reference) {
-    measures.unknown_because = no_reference;
+    measures.unknown_because = "no reference of this scene, size and parameters";
     return measures;
   }
   measures.reference = options_.reference->name();

@@ -73,7 +73,6 @@ class Judge {
   void sample(const inextensible::Positions& filtered, const inextensible::State& state);
   void look_at_marks(const inextensible::State& state, double h);
   void compare(const inextensible::State& state);
-  void compare_positions(const inextensible::Positions& x);
   void add_errors(Measures& measures) const;
 
   const Scene& scene_;

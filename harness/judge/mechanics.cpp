@@ -160,8 +160,6 @@ int count_folds(const Scene& scene, const Positions& x) {
   return folds;
 }
 
-bool is_cloth(const Scene& scene) { return !scene.triangles.empty(); }
-
 Shape shape_of(const Scene& scene, const Positions& x) {
   const double size = scene.size;
   const double reach = 0.75 * size;  // a square cloth of side 1 reaches 0.71 from its middle

@@ -43,8 +43,6 @@ void raise(double& figure, double value);
 
 // ---- The shape of a cloth at rest ----
 
-bool is_cloth(const Scene& scene);  // it has a shadow and a hem
-
 // m^2, of the cloth's shadow on a horizontal plane as far as `reach` (m) from the y axis along x
 // and z: counted on a raster of pixels x pixels.
 double shadow_area(const Scene& scene, const inextensible::Positions& x, double reach, int pixels);

@@ -99,9 +99,9 @@ std::string key_of(const std::string& name, const SceneParameters& complete) {
 }  // namespace
 
 int Reference::samples_at(double level) const {
-  return static_cast<int>(std::count_if(gap.begin(),
-                                        gap.begin() + static_cast<std::ptrdiff_t>(positions.size()),
-                                        [&](double g) { return sure_gaps * g <= level; }));
+  int samples = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i) samples += sure_gaps * gap[i] <= level ? 1 : 0;
+  return samples;
 }
 
 double Reference::known_until(double level) const {

@@ -160,10 +160,10 @@ class ReferenceMaker {
   }
 
  private:
-  // A route's path at the first `samples` times, up to where it fails; h divides the sample
-  // interval. start: the number of a moved start; 0 is the scene's own.
-  const Path& path(const Route& route, double h, std::size_t samples, const State& from,
-                   int start) {
+  // A route's path at the sample times, up to where it fails; h divides the sample interval. start:
+  // the number of a moved start; 0 is the scene's own.
+  const Path& path(const Route& route, double h, const State& from, int start) {
+    const std::size_t samples = r_.times.size();
     const std::string name = route.name() + ", step " + number_text(h, 17) + " s, start " +
                              std::to_string(start) + ", " + std::to_string(samples) + " samples";
     const auto compute = [&] {
@@ -187,9 +187,7 @@ class ReferenceMaker {
     };
     return runs_.run(name, compute).path;
   }
-  const Path& path(const Route& route, double h) {
-    return path(route, h, r_.times.size(), scene_.start, 0);
-  }
+  const Path& path(const Route& route, double h) { return path(route, h, scene_.start, 0); }
 
   const Path& whole_path(const Route& route, double h) {
     const Path& found = path(route, h);
@@ -225,9 +223,7 @@ class ReferenceMaker {
     const Route& route = smooth_route;
     const Path &coarse = whole_path(route, 4 * h), &middle = whole_path(route, 2 * h),
                &fine = whole_path(route, h);
-    const std::size_t all = r_.times.size();
-    r_.observed_order =
-        std::log2(mean_distance(coarse, middle, all) / mean_distance(middle, fine, all));
+    r_.observed_order = std::log2(mean_distance(coarse, middle) / mean_distance(middle, fine));
     const Path second = extrapolated(middle, fine, route.order),
                second_half = extrapolated(coarse, middle, route.order);
     r_.method =
@@ -268,7 +264,7 @@ class ReferenceMaker {
     for (const State& start :
          moved_starts(scene_, (settles ? visible_move : perturbation) * scene_.size))
       parts.push_back({"moved_start", settles ? &half : &fine,
-                       &path(first, settles ? 2 * h : h, r_.times.size(), start, ++moved)});
+                       &path(first, settles ? 2 * h : h, start, ++moved)});
     const bool springs = third && h < quick_finest;
     if (springs) parts.push_back({"third_route", &fine, &path(*third, 8 * h)});
     add_gaps(parts);
@@ -285,7 +281,7 @@ class ReferenceMaker {
     if (second.size() < r_.times.size())
       r_.second_method += ", until it fails after t = " +
                           number_text(second.empty() ? 0.0 : r_.times[second.size() - 1]) + " s";
-    if (r_.valid_until == r_.duration() && is_cloth(scene_)) add_rest_gap(parts);
+    if (r_.valid_until == r_.duration() && !scene_.triangles.empty()) add_rest_gap(parts);
     // After the gap's samples, where a route has ended, distances are the first route's alone.
     for (std::size_t i = r_.gap.size(); i < r_.times.size(); ++i) {
       const Positions& there = i < second.size() ? second[i] : half[i];
@@ -326,18 +322,17 @@ class ReferenceMaker {
       r_.valid_until = r_.times[i];
   }
 
-  // Root mean square over the first `count` samples, over the scene's size.
-  double mean_distance(const Path& a, const Path& b, std::size_t count) const {
+  // Root mean square over all samples, over the scene's size.
+  double mean_distance(const Path& a, const Path& b) const {
     double squares = 0;
-    for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t i = 0; i < a.size(); ++i)
       squares += std::pow(rms_distance(scene_, a[i], b[i]), 2);
-    return std::sqrt(squares / static_cast<double>(count));
+    return std::sqrt(squares / static_cast<double>(a.size()));
   }
 
   Reference finished(const Path& path) {
-    std::size_t valid = 0;
-    while (valid < r_.gap.size() && r_.times[valid] <= r_.valid_until) ++valid;
-    r_.positions.assign(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(valid));
+    const auto valid = std::ranges::upper_bound(r_.times, r_.valid_until) - r_.times.begin();
+    r_.positions.assign(path.begin(), path.begin() + valid);
     if (r_.times.size() > most_samples) thin_out();
     return std::move(r_);
   }

@@ -12,6 +12,10 @@
 namespace harness {
 namespace {
 
+constexpr double most_oblique = 50;  // degrees
+
+using Side = std::pair<int, int>;  // the lower vertex first
+
 Side side(int a, int b) { return std::minmax(a, b); }
 
 template <class Face>
@@ -156,6 +160,73 @@ struct Refinement {
   }
 };
 
+std::vector<Side> sides_of_quads(const ClothMesh& mesh) {
+  std::set<Side> sides;
+  for (const auto& quad : mesh.quads)
+    for (std::size_t k = 0; k < 4; ++k) sides.insert(side_of(quad, k));
+  return {sides.begin(), sides.end()};
+}
+
+// Sides of triangles that no quad has.
+std::vector<Side> sides_of_triangles(const ClothMesh& mesh) {
+  const std::vector<Side> quads = sides_of_quads(mesh);
+  std::set<Side> sides;
+  for (const auto& triangle : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Side s = side_of(triangle, k);
+      if (!std::binary_search(quads.begin(), quads.end(), s)) sides.insert(s);
+    }
+  }
+  return {sides.begin(), sides.end()};
+}
+
+// Yarns are three vertices in a row: two of the sides that meet at the middle vertex are opposite
+// each other. There are none where yarns end or five sides meet.
+std::vector<std::array<int, 3>> yarns_of(const ClothMesh& mesh) {
+  std::vector<std::set<int>> ends(mesh.vertices.size());
+  for (const auto& [a, b] : sides_of_quads(mesh)) {
+    ends[a].insert(b);
+    ends[b].insert(a);
+  }
+  // Neighbours of a corner that are in one quad with it are not opposite each other.
+  std::vector<std::set<Side>> beside(mesh.vertices.size());
+  for (const auto& quad : mesh.quads) {
+    for (std::size_t k = 0; k < 4; ++k)
+      beside[quad[k]].insert(side(quad[(k + 1) % 4], quad[(k + 3) % 4]));
+  }
+  std::vector<std::array<int, 3>> yarns;
+  for (std::size_t v = 0; v < ends.size(); ++v) {
+    if (ends[v].size() > 4) continue;
+    for (const int a : ends[v]) {
+      for (const int b : ends[v]) {
+        if (a >= b || beside[v].contains(side(a, b))) continue;
+        // Within the cloth a side has one side opposite; on its rim the two along it are.
+        const auto others = std::count_if(ends[v].begin(), ends[v].end(), [&](int c) {
+          return c != a && !beside[v].contains(side(a, c));
+        });
+        if (others == 1 && ends[v].size() >= 3) yarns.push_back({a, static_cast<int>(v), b});
+      }
+    }
+  }
+  return yarns;
+}
+
+// Each vertex's share of the faces around it.
+std::vector<double> areas(const ClothMesh& mesh) {
+  const auto& x = mesh.vertices;
+  std::vector<double> all(x.size(), 0.0);
+  for (const auto& [a, b, c, d] : mesh.quads) {
+    // The mean of both ways to cut it.
+    const double area = 0.5 * (triangle_area(x[a], x[b], x[c]) + triangle_area(x[a], x[c], x[d]) +
+                               triangle_area(x[a], x[b], x[d]) + triangle_area(x[b], x[c], x[d]));
+    for (const int v : {a, b, c, d}) all[v] += area / 4;
+  }
+  for (const auto& [a, b, c] : mesh.triangles) {
+    for (const int v : {a, b, c}) all[v] += triangle_area(x[a], x[b], x[c]) / 3;
+  }
+  return all;
+}
+
 }  // namespace
 
 ClothMesh cloth_of(const MeshFile& file, const std::string& path) {
@@ -195,69 +266,6 @@ ClothMesh refined(const ClothMesh& mesh, int n) {
   return refinement.fine;
 }
 
-std::vector<Side> sides_of_quads(const ClothMesh& mesh) {
-  std::set<Side> sides;
-  for (const auto& quad : mesh.quads)
-    for (std::size_t k = 0; k < 4; ++k) sides.insert(side_of(quad, k));
-  return {sides.begin(), sides.end()};
-}
-
-std::vector<Side> sides_of_triangles(const ClothMesh& mesh) {
-  const std::vector<Side> quads = sides_of_quads(mesh);
-  std::set<Side> sides;
-  for (const auto& triangle : mesh.triangles) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Side s = side_of(triangle, k);
-      if (!std::binary_search(quads.begin(), quads.end(), s)) sides.insert(s);
-    }
-  }
-  return {sides.begin(), sides.end()};
-}
-
-std::vector<std::array<int, 3>> yarns_of(const ClothMesh& mesh) {
-  std::vector<std::set<int>> ends(mesh.vertices.size());
-  for (const auto& [a, b] : sides_of_quads(mesh)) {
-    ends[a].insert(b);
-    ends[b].insert(a);
-  }
-  // Neighbours of a corner that are in one quad with it are not opposite each other.
-  std::vector<std::set<Side>> beside(mesh.vertices.size());
-  for (const auto& quad : mesh.quads) {
-    for (std::size_t k = 0; k < 4; ++k)
-      beside[quad[k]].insert(side(quad[(k + 1) % 4], quad[(k + 3) % 4]));
-  }
-  std::vector<std::array<int, 3>> yarns;
-  for (std::size_t v = 0; v < ends.size(); ++v) {
-    if (ends[v].size() > 4) continue;
-    for (const int a : ends[v]) {
-      for (const int b : ends[v]) {
-        if (a >= b || beside[v].contains(side(a, b))) continue;
-        // Within the cloth a side has one side opposite; on its rim the two along it are.
-        const auto others = std::count_if(ends[v].begin(), ends[v].end(), [&](int c) {
-          return c != a && !beside[v].contains(side(a, c));
-        });
-        if (others == 1 && ends[v].size() >= 3) yarns.push_back({a, static_cast<int>(v), b});
-      }
-    }
-  }
-  return yarns;
-}
-
-std::vector<double> areas(const ClothMesh& mesh) {
-  const auto& x = mesh.vertices;
-  std::vector<double> all(x.size(), 0.0);
-  for (const auto& [a, b, c, d] : mesh.quads) {
-    // The mean of both ways to cut it.
-    const double area = 0.5 * (triangle_area(x[a], x[b], x[c]) + triangle_area(x[a], x[c], x[d]) +
-                               triangle_area(x[a], x[b], x[d]) + triangle_area(x[b], x[c], x[d]));
-    for (const int v : {a, b, c, d}) all[v] += area / 4;
-  }
-  for (const auto& [a, b, c] : mesh.triangles) {
-    for (const int v : {a, b, c}) all[v] += triangle_area(x[a], x[b], x[c]) / 3;
-  }
-  return all;
-}
-
 ParameterInfos with_cloth_parameters(const ParameterInfos& own, const ClothDefaults& cloth,
                                      double duration) {
   return joined({own, fabric_parameters(cloth), {duration_info(duration)}});
@@ -266,24 +274,19 @@ ParameterInfos with_cloth_parameters(const ParameterInfos& own, const ClothDefau
 Draft cloth_draft(const ClothMesh& mesh, const SceneParameters& p) {
   const auto length = [&](int a, int b) { return (mesh.vertices[a] - mesh.vertices[b]).norm(); };
   const auto held = [&](auto... vertices) { return (mesh.held[vertices] && ...); };
-  Draft draft;
+  const auto n = static_cast<int>(mesh.vertices.size());
+  Draft draft(n, p);
   inextensible::ProblemParts& parts = draft.parts;
   Scene& scene = draft.scene;
-  const auto n = static_cast<int>(mesh.vertices.size());
   const std::vector<double> area = areas(mesh);
-  scene.start.x.resize(3, n);
-  scene.start.v.setZero(3, n);
   for (int v = 0; v < n; ++v) {
     scene.start.x.col(v) = mesh.vertices[v];
     if (held(v)) parts.pinned.push_back(v);
     parts.mass.push_back(p.at("density") * area[v]);
     if (p.at("drag") > 0) parts.drag.push_back(p.at("drag") * area[v]);
   }
-  parts.gravity = {0, -p.at("gravity"), 0};
   for (const auto& [a, b] : sides_of_quads(mesh)) {
-    if (held(a, b)) continue;
-    parts.edges.push_back({a, b});
-    parts.rest_length.push_back(length(a, b));
+    if (!held(a, b)) draft.constrain(a, b, length(a, b));
   }
   if (p.at("shear") > 0) {
     inextensible::Springs springs;
@@ -314,7 +317,6 @@ Draft cloth_draft(const ClothMesh& mesh, const SceneParameters& p) {
     scene.triangles.insert(scene.triangles.end(), {{a, b, d}, {c, d, b}});
   scene.triangles.insert(scene.triangles.end(), mesh.triangles.begin(), mesh.triangles.end());
   scene.staggered = false;
-  scene.duration = p.at("duration");
   return draft;
 }
 

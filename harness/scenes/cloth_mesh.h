@@ -30,22 +30,9 @@ struct ClothMesh {
 // UsageError, naming file and vertices (counted from 1), for faces of more corners, sides without
 // length, and sides of more than two faces.
 ClothMesh cloth_of(const MeshFile& file, const std::string& path);
-inline constexpr double most_oblique = 50;  // degrees
 
 // Each side cut into n.
 ClothMesh refined(const ClothMesh& mesh, int n);
-
-using Side = std::pair<int, int>;  // the lower vertex first
-std::vector<Side> sides_of_quads(const ClothMesh& mesh);
-// Sides of triangles that no quad has.
-std::vector<Side> sides_of_triangles(const ClothMesh& mesh);
-
-// Yarns: three vertices in a row, the middle one of whose four sides at quads two are opposite
-// each other. Where yarns end or five sides meet there are none.
-std::vector<std::array<int, 3>> yarns_of(const ClothMesh& mesh);
-
-// Each vertex's share of the faces around it.
-std::vector<double> areas(const ClothMesh& mesh);
 
 // ---- The scene ----
 

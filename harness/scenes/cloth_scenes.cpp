@@ -215,46 +215,6 @@ ParameterInfos stiff_cotton(double n) {
                  {{"waves", 0.01, "amplitude of the start's waves, m; 0: flat", zero_too, 0.05}}});
 }
 
-// Known to its end: air and bending let it fold in one way only.
-SceneType settling_drape() {
-  return {
-      .name = "settling_drape",
-      .summary = "stiff cotton that falls onto a sphere in air, off its axis, and comes to rest",
-      .parameters = drape_parameters(
-          stiff_cotton(71),
-          {{"off_axis", 0.08,
-            "how far its middle is from the sphere's axis along x, and half as far "
-            "along -z, m",
-            -10, 10}},
-          3),
-      .build = build_drape,
-      .counts = count_square};
-}
-
-SceneType curtain() {
-  return {.name = "curtain",
-          .summary = "stiff cotton that swings down in air from two corners",
-          .parameters = joined({stiff_cotton(31), {duration_info()}}),
-          .build = build_curtain,
-          .counts = count_square,
-          .like = "patch"};
-}
-
-SceneType sliding_block() {
-  return {.name = "sliding_block",
-          .summary =
-              "a square of cloth that slides on a table until friction stops it: its motion is "
-              "known",
-          .parameters = joined({cloth_parameters(5),
-                                {{"speed", 1, "at the start, m/s", 0, 1e4},
-                                 {"friction", 0.3, "Coulomb coefficient", 0, 1e3},
-                                 duration_info(0.6)}}),
-          .build = build_block,
-          .counts = count_square,
-          .exact = block_at,
-          .like = "drape"};
-}
-
 // ---- Cusick's drape test ----
 // The quads of a square grid whose middle lies in the disc: its area is the disc's, but for what
 // the grid leaves open. In the plane y = 0, pinned where the table is.
@@ -305,25 +265,6 @@ Scene build_cusick(const SceneParameters& p) {
   return finished(std::move(draft));
 }
 
-SceneType cusick() {
-  const Fabric& cotton = fabric("cotton");
-  return {
-      .name = "cusick",
-      .summary =
-          "a disc of cotton broadcloth hangs over the edge of a round table (Cusick's drape "
-          "test)",
-      .parameters = with_cloth_parameters(
-          {{"n", 31, "vertices along the disc's diameter", 7, 1000, true},
-           {"radius", 0.15, "of the disc, m", 0, 1e6},
-           {"table", 0.09, "radius on which it is held, m", 0, 1e6},
-           {"uneven", 2e-4, "height of waves along the rim at the start, m", zero_too, 1e-2}},
-          {.density = cotton.density, .shear = fabric_shear, .bending = cotton.bending, .drag = 1},
-          1.5),
-      .build = build_cusick,
-      .counts = [](const SceneParameters& p) { return count_cloth(disc_of(p)); },
-      .like = "patch"};
-}
-
 }  // namespace
 
 std::vector<SceneType> cloth_scenes() {
@@ -340,9 +281,35 @@ std::vector<SceneType> cloth_scenes() {
                      "the drape with a fabric's weight, shear and bending in physical units, "
                      "implicit, and air",
                      {0.15, 20, 1e-5, 0.05}),
-      settling_drape(),
-      curtain(),
-      sliding_block(),
+      // Known to its end: air and bending let it fold in one way only.
+      {.name = "settling_drape",
+       .summary = "stiff cotton that falls onto a sphere in air, off its axis, and comes to rest",
+       .parameters = drape_parameters(
+           stiff_cotton(71),
+           {{"off_axis", 0.08,
+             "how far its middle is from the sphere's axis along x, and half as far "
+             "along -z, m",
+             -10, 10}},
+           3),
+       .build = build_drape,
+       .counts = count_square},
+      {.name = "curtain",
+       .summary = "stiff cotton that swings down in air from two corners",
+       .parameters = joined({stiff_cotton(31), {duration_info()}}),
+       .build = build_curtain,
+       .counts = count_square,
+       .like = "patch"},
+      {.name = "sliding_block",
+       .summary = "a square of cloth that slides on a table until friction stops it: its motion is "
+                  "known",
+       .parameters = joined({cloth_parameters(5),
+                             {{"speed", 1, "at the start, m/s", 0, 1e4},
+                              {"friction", 0.3, "Coulomb coefficient", 0, 1e3},
+                              duration_info(0.6)}}),
+       .build = build_block,
+       .counts = count_square,
+       .exact = block_at,
+       .like = "drape"},
       measured_fabric("cotton_drape", "fabric_drape of cotton broadcloth, as measured", "cotton"),
       measured_fabric("wool_drape", "fabric_drape of wool tropical, as measured", "wool"),
       measured_fabric("polyester_drape", "fabric_drape of polyester tropical, as measured",
@@ -372,7 +339,23 @@ std::vector<SceneType> cloth_scenes() {
        .parameters = joined({cloth_parameters(31), {duration_info()}}),
        .build = build_patch,
        .counts = count_square},
-      cusick()};
+      {.name = "cusick",
+       .summary =
+           "a disc of cotton broadcloth hangs over the edge of a round table (Cusick's drape "
+           "test)",
+       .parameters = with_cloth_parameters(
+           {{"n", 31, "vertices along the disc's diameter", 7, 1000, true},
+            {"radius", 0.15, "of the disc, m", 0, 1e6},
+            {"table", 0.09, "radius on which it is held, m", 0, 1e6},
+            {"uneven", 2e-4, "height of waves along the rim at the start, m", zero_too, 1e-2}},
+           {.density = fabric("cotton").density,
+            .shear = fabric_shear,
+            .bending = fabric("cotton").bending,
+            .drag = 1},
+           1.5),
+       .build = build_cusick,
+       .counts = [](const SceneParameters& p) { return count_cloth(disc_of(p)); },
+       .like = "patch"}};
 }
 
 }  // namespace harness

@@ -22,6 +22,18 @@ void bend_yarns(inextensible::ProblemParts& parts, int n, double l, double rigid
 
 }  // namespace
 
+Draft::Draft(int vertices, const SceneParameters& p) {
+  parts.gravity = {0, -value_or_zero(p, "gravity"), 0};
+  scene.start.x.setZero(3, vertices);
+  scene.start.v.setZero(3, vertices);
+  scene.duration = p.at("duration");
+}
+
+void Draft::constrain(int a, int b, double length) {
+  parts.edges.push_back({a, b});
+  parts.rest_length.push_back(length);
+}
+
 Scene finished(Draft draft) {
   draft.scene.problem = std::make_shared<const inextensible::Problem>(std::move(draft.parts));
   return std::move(draft.scene);
@@ -35,20 +47,13 @@ Scene released(Draft draft, std::vector<int> pinned) {
 
 Draft vertex_row(const SceneParameters& p) {
   const int n = whole(p);
-  const double link = row_link(p);
-  Draft row;
+  Draft row(n, p);
   row.parts.mass.assign(n, p.at("mass") / n);
-  row.parts.gravity = {0, -value_or_zero(p, "gravity"), 0};
-  row.scene.start.x.setZero(3, n);
-  row.scene.start.v.setZero(3, n);
   Scene::Mirror plane{{0, 0, 1}, {}};
   for (int i = 0; i < n; ++i) {
     plane.image.push_back(i);
-    if (i == 0) continue;
-    row.parts.edges.push_back({i - 1, i});
-    row.parts.rest_length.push_back(link);
+    if (i > 0) row.constrain(i - 1, i, row_link(p));
   }
-  row.scene.duration = p.at("duration");
   row.scene.size = p.at("length");
   row.scene.mirrors.push_back(std::move(plane));
   return row;
@@ -57,21 +62,14 @@ Draft vertex_row(const SceneParameters& p) {
 Draft vertex_square(const SceneParameters& p, double y) {
   const int n = whole(p);
   const double side = p.at("side"), l = square_link(p);
-  Draft square;
+  Draft square(n * n, p);
   inextensible::ProblemParts& parts = square.parts;
   Scene& scene = square.scene;
   const bool fabric = p.contains("density");
   const double mass = fabric ? p.at("density") * side * side : p.at("mass");
   parts.mass.assign(n * n, mass / (n * n));
-  parts.gravity = {0, -value_or_zero(p, "gravity"), 0};
-  scene.start.x.resize(3, n * n);
-  scene.start.v.setZero(3, n * n);
   Scene::Mirror left_right{{1, 0, 0}, {}}, front_back{{0, 0, 1}, {}};
   const auto vertex = [n](int i, int j) { return i * n + j; };
-  const auto constrain = [&](int a, int b) {
-    parts.edges.push_back({a, b});
-    parts.rest_length.push_back(l);
-  };
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) {
       // (2 j - (n - 1)) is exactly antisymmetric, so that the start is mirror symmetric to the last
@@ -80,8 +78,8 @@ Draft vertex_square(const SceneParameters& p, double y) {
           0.5 * l * (2 * i - (n - 1));
       left_right.image.push_back(vertex(i, n - 1 - j));
       front_back.image.push_back(vertex(n - 1 - i, j));
-      if (j + 1 < n) constrain(vertex(i, j), vertex(i, j + 1));  // weft
-      if (i + 1 < n) constrain(vertex(i, j), vertex(i + 1, j));  // warp
+      if (j + 1 < n) square.constrain(vertex(i, j), vertex(i, j + 1), l);  // weft
+      if (i + 1 < n) square.constrain(vertex(i, j), vertex(i + 1, j), l);  // warp
     }
   }
   inextensible::Springs diagonals;
@@ -102,7 +100,6 @@ Draft vertex_square(const SceneParameters& p, double y) {
   if (bending > 0) bend_yarns(parts, n, l, bending);
   if (drag > 0) parts.drag.assign(n * n, drag * l * l);
   parts.implicit_forces = fabric;
-  scene.duration = p.at("duration");
   scene.size = side;
   scene.mirrors = {std::move(left_right), std::move(front_back)};
   scene.corners = {vertex(0, 0), vertex(0, n - 1), vertex(n - 1, 0), vertex(n - 1, n - 1)};

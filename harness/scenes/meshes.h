@@ -7,6 +7,10 @@ namespace harness {
 
 // A scene whose problem is still open: pins, colliders and positions may change.
 struct Draft {
+  // Vertices at rest at the origin; gravity and duration are the parameters.
+  Draft(int vertices, const SceneParameters& p);
+  void constrain(int a, int b, double length);
+
   inextensible::ProblemParts parts;
   Scene scene;
 };

@@ -25,12 +25,11 @@ class Pendulum {
   // length and angle for each of one link or more; masses and lengths are positive.
   Pendulum(Links links, std::vector<double> angles);
 
-  // Integrates to `time` (s, not before time()) by GSL's Runge-Kutta-Prince-Dormand pair of orders
-  // 8 and 9, with this tolerance on every angle (rad) and rate (rad/s). Throws std::runtime_error
-  // if the integrator gives up.
+  // Integrates to `time` (s, not before the last call's) by GSL's Runge-Kutta-Prince-Dormand pair
+  // of orders 8 and 9, with this tolerance on every angle (rad) and rate (rad/s). Throws
+  // std::runtime_error if the integrator gives up.
   void advance(double time, double tolerance);
 
-  double time() const { return time_; }
   double energy() const;  // J, potential 0 at the fixed point's height
   // Points 0 ... N (3 x (N + 1), m), point 0 at the origin.
   inextensible::Positions positions() const;

@@ -58,8 +58,8 @@ SceneParameters complete_parameters(const SceneType& type, const SceneParameters
     const bool inside = (info.integer ? value >= info.low : value > info.low) && value <= info.high;
     if (inside && (!info.integer || value == std::floor(value))) continue;
     const std::string bound = info.integer ? "a whole number of at least " + number_text(info.low)
-                              : info.low == -1e-300 ? "at least 0"
-                                                    : "above " + number_text(info.low);
+                              : info.low == zero_too ? "at least 0"
+                                                     : "above " + number_text(info.low);
     throw UsageError("scene " + type.name + ": '" + info.name + "' is " + number_text(value) +
                      ", must be " + bound + " and at most " + number_text(info.high));
   }

@@ -85,14 +85,14 @@ std::vector<std::string> scene_kinds();  // of all scenes, each once
 // The scene's parameters with `given` put in. Throws UsageError, naming the parameter, for unknown
 // or impossible ones.
 SceneParameters complete_parameters(const SceneType& type, const SceneParameters& given);
-// A scene that there is, with some of its parameters given.
+// The scene of an existing name, with some of its parameters given.
 Scene built_scene(std::string_view name, const SceneParameters& given);
 
 // ---- Cloth from a mesh of one's own: "mesh:shirt.obj,pins=y>1.2,body=body.obj" ----
 //
-// Warp and weft are the sides of quads. Triangles that make a good quad together are taken for one,
-// and what is left of them holds with springs alone: a net of inextensible triangles would not
-// bend. A body is a closed mesh.
+// Warp and weft are the sides of quads. Two triangles that make a good quad are taken as one;
+// springs alone hold the remaining triangles, as a net of inextensible triangles would not bend. A
+// body is a closed mesh.
 
 bool names_mesh(std::string_view scene);  // "mesh:..."
 

@@ -50,17 +50,12 @@ Scene build_baton(const SceneParameters& p) {
 Scene build_hoop(const SceneParameters& p) {
   const int n = whole(p);
   const double r = p.at("radius"), sector = 2 * std::numbers::pi / n;
-  Draft hoop;
+  Draft hoop(n, p);
   hoop.parts.mass.assign(n, p.at("mass") / n);
-  hoop.parts.gravity.setZero();
-  hoop.scene.start.x.resize(3, n);
-  hoop.scene.start.v.setZero(3, n);
   for (int i = 0; i < n; ++i) {
     hoop.scene.start.x.col(i) << r * std::cos(sector * i), r * std::sin(sector * i), 0;
-    hoop.parts.edges.push_back({i, (i + 1) % n});
-    hoop.parts.rest_length.push_back(2 * r * std::sin(0.5 * sector));
+    hoop.constrain(i, (i + 1) % n, 2 * r * std::sin(0.5 * sector));
   }
-  hoop.scene.duration = p.at("duration");
   hoop.scene.size = 2 * r;
   return spinning(std::move(hoop), Vector3d::UnitZ(), p);
 }

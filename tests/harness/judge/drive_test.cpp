@@ -1,4 +1,4 @@
-// How drives end, and what their onlookers see, with a stepper that refuses long steps.
+// How drives end, and what their observers see, with a stepper that refuses long steps.
 #include "harness/judge/drive.h"
 
 #include <gtest/gtest.h>

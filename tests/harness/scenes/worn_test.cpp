@@ -15,10 +15,9 @@ namespace {
 
 using inextensible::Pose;
 using inextensible::State;
+using testing::build;
 
 constexpr int around = 24;
-
-Scene garment(const SceneParameters& given) { return testing::build("garment", given); }
 
 // By yarns, and a step that a tight rim refuses is halved: fast projection is thrown off a tight
 // rim in one build and not in another.
@@ -35,7 +34,8 @@ State after(const Scene& scene, double limit, double seconds) {
 // It slides down until its rim is taut where the body is as wide as that: circumference over
 // 2 pi is the rim's radius and at most the strain limit more.
 TEST(Garment, RestsWhereTheBodyIsAsWideAsItsRimMayBe) {
-  const Scene scene = garment({{"n", around}, {"sway", 0}, {"turn", 0}, {"friction", 0.05}});
+  const Scene scene =
+      build("garment", {{"n", around}, {"sway", 0}, {"turn", 0}, {"friction", 0.05}});
   const double limit = 0.01, rim = 0.13, waist = 0.115, hips = 0.137, drop = 0.12;
   const State state = after(scene, limit, 1.5);
   for (int v = 0; v < around; ++v) {
@@ -49,22 +49,23 @@ TEST(Garment, RestsWhereTheBodyIsAsWideAsItsRimMayBe) {
 }
 
 TEST(Garment, SlipsPastHipsThatItsRimMayPass) {
-  const Scene scene = garment({{"n", around}, {"sway", 0}, {"turn", 0}, {"friction", 0.05}});
+  const Scene scene =
+      build("garment", {{"n", around}, {"sway", 0}, {"turn", 0}, {"friction", 0.05}});
   EXPECT_LT(after(scene, 0.1, 1).x.row(1).head(around).maxCoeff(), -0.12);
 }
 
 TEST(Garment, ItsBodyStartsAtRestWhereItIs) {
-  const Scene scene = garment({{"n", around}});
+  const Scene scene = build("garment", {{"n", around}});
   const auto& motion = scene.problem->body_motion();
   const Pose start = motion(0), soon = motion(1e-4);
   EXPECT_EQ(start.turn, Eigen::Matrix3d::Identity());
   EXPECT_EQ(start.translation, Eigen::Vector3d::Zero().eval());
   EXPECT_LT((soon.turn - start.turn).norm() + (soon.translation - start.translation).norm(), 1e-9);
-  EXPECT_FALSE(garment({{"sway", 0}, {"turn", 0}}).problem->body_motion());
+  EXPECT_FALSE(build("garment", {{"sway", 0}, {"turn", 0}}).problem->body_motion());
 }
 
 TEST(Cape, HangsFromTheMovingBody) {
-  const Scene scene = testing::build("cape", {{"n", 15}});
+  const Scene scene = build("cape", {{"n", 15}});
   const inextensible::Problem& problem = *scene.problem;
   ASSERT_GT(problem.pinned().size(), 2U);
   ASSERT_LT(problem.pinned().size(), 15U) << "a part of the collar";
