@@ -68,7 +68,7 @@ struct ProgramResult {
 ProgramResult run_program(const std::vector<std::string>& words, double timeout,
                           const std::string& input = "");
 
-// What became of a child that ended by itself, or was ended by others, without a result.
+// What became of a child that ended by itself or was ended, without a result.
 std::string ending(const ChildOutcome& outcome);
 
 // "SIGSEGV (Segmentation fault)"

@@ -477,16 +477,12 @@ std::vector<Finding> examine(const std::string& solver, const ConformanceOptions
           try {
             return check.run(examinee);
           } catch (const NotTaken& reason) {  // a scene that is not taken is none to examine it on
-            return Findings{{Finding::Grade::not_applicable, check.name,
-                             std::string("not taken: ") + reason.what(), ""}};
+            return Findings{not_applicable(check.name, std::string("not taken: ") + reason.what())};
           }
         },
         [](const nlohmann::json& list) { return list.get<Findings>(); },
         [&](const ChildOutcome& child) {
-          const std::string how = child.end == ChildOutcome::End::timed_out
-                                      ? "did not end within " + number_text(check.timeout) + " s"
-                                      : ending(child);
-          return Findings{{Finding::Grade::fail, check.name, how,
+          return Findings{{Grade::fail, check.name, ending(child),
                            "run it alone under a debugger: the checks are in "
                            "harness/stability/conformance.cpp"}};
         });
@@ -499,7 +495,7 @@ std::vector<Finding> examine(const std::string& solver, const ConformanceOptions
 }
 
 bool conforms(const std::vector<Finding>& findings) {
-  return std::ranges::count(findings, Finding::Grade::fail, &Finding::grade) == 0;
+  return std::ranges::count(findings, Grade::fail, &Finding::grade) == 0;
 }
 
 }  // namespace harness

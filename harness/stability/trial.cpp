@@ -259,11 +259,10 @@ TrialResult run_isolated_trial(const std::function<Trial()>& build, const std::s
       [&](Heartbeat& /*heartbeat*/) { return to_json(run_trial(build, solver, seed)); },
       trial_result_of,
       [](const ChildOutcome& child) {
-        const bool stuck = child.end == ChildOutcome::End::timed_out;
         TrialResult result;
-        result.fixed = result.outcome = stuck ? Outcome::timeout : Outcome::crashed;
-        result.detail =
-            stuck ? "a step did not end within " + number_text(longest) + " s" : ending(child);
+        result.fixed = result.outcome =
+            child.end == ChildOutcome::End::timed_out ? Outcome::timeout : Outcome::crashed;
+        result.detail = ending(child);
         return result;
       });
 }

@@ -86,7 +86,7 @@ TEST(ScenesOfKnownMotion, ObeyTheEquationsOfMotion) {
 TEST(Readings, OfExactMotionAreTheExactValues) {
   for (const KnownAnswer& answer : known_answers()) {
     if (answer.continuum || answer.needs_multipliers) continue;
-    const AnswerScene at = answer_scene(answer.scene, answer.given);
+    const AnswerScene at = answer.at();
     if (!at.type->exact) continue;
     const double exact = answer.exact(at);
     EXPECT_NEAR(read_off_exact_motion(answer, at, answer.steps.back()), exact,
@@ -165,10 +165,8 @@ TEST(DrapeCoefficient, OfConesIsThatOfTheirShadows) {
 
 // The rows of one answer by one solver.
 std::vector<AnswerRow> measured(const char* answer, const char* solver, double timeout = 20) {
-  AnswerSelection selection;
-  selection.answer = Pattern("answer", answer);
-  selection.solver = Pattern("solver", solver);
-  return run_answers(plan_answers(selection), timeout, {}).rows;
+  const auto plan = plan_answers(Pattern("answer", answer), Pattern("solver", solver));
+  return run_answers(plan, timeout, {}).rows;
 }
 
 TEST(KnownAnswers, AreMetWithTheOrdersOfTheMethods) {
