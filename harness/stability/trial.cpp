@@ -211,18 +211,15 @@ TrialResult run_trial(const std::function<Trial()>& build, const std::string& so
     if (result.fixed == Outcome::refused) {
       TrialResult again;
       again.outcome = attempt(trial, backend, seed, true, again);
-      again.fixed = result.fixed;
       if (again.outcome == Outcome::survived) again.outcome = Outcome::survived_smaller;
       again.detail = result.detail + (again.detail == result.detail || again.detail.empty()
                                           ? ""
                                           : "; with smaller steps: " + again.detail);
       result = std::move(again);
     }
-  } catch (const std::invalid_argument& error) {
-    result.fixed = result.outcome = Outcome::refused;
+  } catch (const std::invalid_argument& error) {  // refused, as results are at first
     result.detail = std::string("at the door: ") + error.what();
   } catch (const std::bad_alloc&) {
-    result.fixed = result.outcome = Outcome::refused;
     result.detail = "an allocation failed";
   }
   result.seconds = since(begin);
