@@ -50,7 +50,7 @@ struct Motion {
   }
 };
 
-// What is read off a run; NaN if the run does not tell.
+// What is read off a run; NaN if the run does not show it.
 using Reading = double(const AnswerScene& at, const Motion& motion);
 Reading* reading_named(const std::string& name);  // throws std::out_of_range
 

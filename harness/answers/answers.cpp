@@ -102,7 +102,7 @@ struct Ending : CalibrationTrial {
   double value = unknown;
 };
 
-// Keeps what the last multipliers pull: lambda_k times the gradient of edge k's constraint.
+// Keeps the pulls of the last multipliers: lambda_k times the gradient of edge k's constraint.
 class PullObserver final : public inextensible::IterateObserver {
  public:
   PullObserver(const inextensible::Problem& problem, std::vector<double>& pulls)

@@ -27,10 +27,9 @@ TrialJudge::TrialJudge(const Trial& trial, const inextensible::Backend& backend,
       limit_promised_(backend.strain_control == inextensible::StrainControl::strain_limit),
       mass_(problem_.total_mass()),
       free_(backend.conserves_momentum && problem_.pinned().empty() && !problem_.collider()),
+      energy_known_(strain_range(problem_, trial.scene.start.x).most <= trial.strain_limit),
       energy_(problem_, energy_scale(trial.scene), backend.velocities) {
   judged_ = trial.energy_tolerance >= 0 && !trial.disturb && energy_.scale() > 0;
-  // What a start that violates the limit releases is known after the first step.
-  energy_known_ = strain_range(problem_, trial.scene.start.x).most <= trial.strain_limit;
   energy_.begin(trial.scene.start);
 }
 
