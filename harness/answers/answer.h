@@ -50,7 +50,7 @@ struct Motion {
   }
 };
 
-// What is read off a run; NaN if the run does not tell.
+// What is read off a run; NaN if the run does not show it.
 using Reading = double(const AnswerScene& at, const Motion& motion);
 Reading* reading_named(const std::string& name);  // throws std::out_of_range
 
@@ -72,6 +72,8 @@ struct KnownAnswer {
   bool continuum;          // exact in the limit of many vertices: runs tend to something nearby
   bool until_read;         // a run ends as soon as it tells
   double stiffness;  // N, of methods without a limit; not-a-number: what keeps the strain limit
+
+  AnswerScene at() const { return answer_scene(scene, given); }
 };
 
 // Those of configs/answers.json.
@@ -80,17 +82,15 @@ const KnownAnswer* find_answer(std::string_view name);
 
 // ---- Runs of solvers ----
 
-struct AnswerSelection {
-  std::optional<Pattern> answer, solver;  // must match the whole name
-};
-
 // A solver's runs at all steps of an answer, each in a child process, the coarsest step first.
 struct AnswerRun {
   const KnownAnswer* answer;
   std::string solver;
 };
-// All contestants that can do the answer's scene. Throws UsageError if nothing matches.
-std::vector<AnswerRun> plan_answers(const AnswerSelection& selection);
+// All contestants that can run an answer's scene. Patterns must match the whole name. Throws
+// UsageError if nothing matches.
+std::vector<AnswerRun> plan_answers(const std::optional<Pattern>& answer,
+                                    const std::optional<Pattern>& solver);
 
 struct AnswerOutcome {
   std::vector<AnswerRow> rows;

@@ -103,7 +103,7 @@ struct Ending : CalibrationTrial {
   double value = unknown;
 };
 
-// Keeps what the last multipliers pull: lambda_k times the gradient of edge k's constraint.
+// Keeps the pulls of the last multipliers: lambda_k times the gradient of edge k's constraint.
 class PullObserver final : public inextensible::IterateObserver {
  public:
   PullObserver(const inextensible::Problem& problem, std::vector<double>& pulls)
@@ -166,16 +166,16 @@ Ending run_once(const KnownAnswer& answer, const AnswerScene& at, const Backend&
 
 Ending run_calibrated(const KnownAnswer& answer, const Backend& backend, double step,
                       double timeout) {
-  const AnswerScene at = answer_scene(answer.scene, answer.given);
-  if (backend.strain_control != inextensible::StrainControl::stiffness)
-    return run_once(answer, at, backend, {}, step, timeout);
-  if (std::isfinite(answer.stiffness))
-    return run_once(answer, at, backend, {{"stiffness", answer.stiffness}}, step, timeout);
+  const AnswerScene at = answer.at();
+  const auto run = [&](const inextensible::Settings& settings) {
+    return run_once(answer, at, backend, settings, step, timeout);
+  };
+  if (backend.strain_control != inextensible::StrainControl::stiffness) return run({});
+  if (std::isfinite(answer.stiffness)) return run({{"stiffness", answer.stiffness}});
   std::map<double, Ending> endings;
   const Calibration found = calibrate_stiffness(
       answer.strain_limit, first_stiffness(at.scene, answer.strain_limit), [&](double stiffness) {
-        return endings[stiffness] =
-                   run_once(answer, at, backend, {{"stiffness", stiffness}}, step, timeout);
+        return endings[stiffness] = run({{"stiffness", stiffness}});
       });
   if (found.stiffness) return endings.at(*found.stiffness);
   return {{.detail = found.detail}};
@@ -207,21 +207,20 @@ json run_apart(const KnownAnswer& answer, const Backend& backend, double step, d
       },
       [](const json& run) { return run; },
       [](const ChildOutcome& child) -> json {
-        const bool stuck = child.end == ChildOutcome::End::timed_out;
-        return {{"value", nullptr}, {"detail", stuck ? "a step did not end" : ending(child)}};
+        return {{"value", nullptr}, {"detail", ending(child)}};
       });
 }
 
 }  // namespace
 
-std::vector<AnswerRun> plan_answers(const AnswerSelection& selection) {
+std::vector<AnswerRun> plan_answers(const std::optional<Pattern>& answer_pattern,
+                                    const std::optional<Pattern>& solver) {
   std::vector<AnswerRun> plan;
   for (const KnownAnswer& answer : known_answers()) {
-    if (selection.answer && !selection.answer->matches(answer.name)) continue;
-    const AnswerScene at = answer_scene(answer.scene, answer.given);
+    if (answer_pattern && !answer_pattern->matches(answer.name)) continue;
+    const AnswerScene at = answer.at();
     for (const Backend& backend : inextensible::backends()) {
-      if (!backend.contestant || (selection.solver && !matches(*selection.solver, backend.name)))
-        continue;
+      if (!backend.contestant || (solver && !matches(*solver, backend.name))) continue;
       if (answer.needs_multipliers && !backend.shows_iterates) continue;
       if (inextensible::part_not_taken(backend, *at.scene.problem)) continue;
       plan.push_back({&answer, backend.name});
@@ -238,7 +237,7 @@ AnswerOutcome run_answers(const std::vector<AnswerRun>& plan, double timeout,
   std::size_t all = 0;
   for (const AnswerRun& run : plan) all += run.answer->steps.size();
   for (const AnswerRun& run : plan) {
-    const double exact = run.answer->exact(answer_scene(run.answer->scene, run.answer->given));
+    const double exact = run.answer->exact(run.answer->at());
     std::vector<double> deviations;
     for (const double step : run.answer->steps) {
       if (events.interrupted()) throw Interrupted();
@@ -267,7 +266,7 @@ json answers_document(json context, const std::vector<AnswerRun>& plan,
   for (const AnswerRun& run : plan) {
     if (run.answer == std::exchange(last, run.answer)) continue;
     const KnownAnswer& answer = *run.answer;
-    const AnswerScene at = answer_scene(answer.scene, answer.given);
+    const AnswerScene at = answer.at();
     answers.push_back({{"name", answer.name},
                        {"scene", answer.scene},
                        {"scene_parameters", at.parameters},

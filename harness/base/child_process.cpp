@@ -229,6 +229,7 @@ std::string ending(const ChildOutcome& outcome) {
   if (outcome.end == ChildOutcome::End::killed) return "killed by " + signal_text(outcome.code);
   if (outcome.end == ChildOutcome::End::exited)
     return "ended with exit code " + std::to_string(outcome.code);
+  if (outcome.end == ChildOutcome::End::timed_out) return "a step did not end in time";
   return outcome.text;  // of the exception
 }
 

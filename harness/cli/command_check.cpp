@@ -72,7 +72,7 @@ struct Answers : OutputOptions {
   }
 
   int run(const Words& typed) {
-    const auto plan = plan_answers({pattern_of("--answer", answer), solver_pattern(solver)});
+    const auto plan = plan_answers(pattern_of("--answer", answer), solver_pattern(solver));
     nlohmann::json context = machine_context();
     context["selection"] = {{"solver", solver}, {"answer", answer}, {"timeout", timeout}};
     const auto compute = [&](Journal& journal, const nlohmann::json&) -> Finished {

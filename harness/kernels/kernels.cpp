@@ -58,27 +58,23 @@ double shortest(int rounds, Work work) {
 
 // A square root and a division an edge, independent of each other, in the first-level cache: what
 // no pass that corrects every edge can go below.
-using Lengths = std::array<double, 1024>;
-Lengths some_lengths() {
-  Lengths lengths;
-  lengths.fill(1.2);
-  return lengths;
-}
-void sqrt_div(Lengths& lengths) {
-  for (double& q : lengths) q = 1.5 - 0.5 / std::sqrt(q);
-  benchmark::DoNotOptimize(lengths);
-}
+struct SqrtDiv {
+  static constexpr int edges = 1024;
+  std::array<double, edges> lengths{};
+  SqrtDiv() { lengths.fill(1.2); }
+  void operator()() {
+    for (double& q : lengths) q = 1.5 - 0.5 / std::sqrt(q);
+    benchmark::DoNotOptimize(lengths);
+  }
+};
 
-// s for one edge.
+// s for one edge. Measured at the first call.
 double sqrt_div_seconds() {
-  static const double seconds = [lengths = some_lengths()]() mutable {
-    return shortest(1000,
-                    [&] {
-                      for (int repeat = 0; repeat < 20; ++repeat) sqrt_div(lengths);
-                    }) /
-           static_cast<double>(20 * lengths.size());
-  }();
-  return seconds;
+  constexpr int passes = 20;
+  static const double all = shortest(1000, [pass = SqrtDiv()]() mutable {
+    for (int i = 0; i < passes; ++i) pass();
+  });
+  return all / (passes * SqrtDiv::edges);
 }
 
 void read_all(const Eigen::VectorXd& data) {
@@ -411,9 +407,9 @@ void register_linear_systems(const std::string& scene, int n, const std::vector<
 
 void register_floors() {
   add("floor/sqrt_div", [](benchmark::State& state) {
-    Lengths lengths = some_lengths();
-    while (state.KeepRunning()) sqrt_div(lengths);
-    per_item(state, static_cast<int>(lengths.size()));
+    SqrtDiv pass;
+    while (state.KeepRunning()) pass();
+    per_item(state, SqrtDiv::edges);
   });
   add("floor/product", [](benchmark::State& state) {
     Product product;

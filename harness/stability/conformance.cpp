@@ -53,16 +53,14 @@ struct Case : Trial {
 };
 
 Case case_of(std::string name, Scene scene, double h, int steps, double limit = 0.01) {
-  Case c;
-  c.name = std::move(name);
-  c.scene = std::move(scene);
-  c.step = h;
-  c.steps = steps;
-  c.strain_limit = limit;
-  c.energy_tolerance = -1;
-  // Rounding, and the 1e-10 to which the KKT system's residual is refined.
-  c.momentum_tolerance = 1e-9;
-  return c;
+  // Momentum: rounding, and the 1e-10 to which the KKT system's residual is refined.
+  return {{.scene = std::move(scene),
+           .step = h,
+           .steps = steps,
+           .strain_limit = limit,
+           .energy_tolerance = -1,
+           .momentum_tolerance = 1e-9},
+          std::move(name)};
 }
 
 // All parts in a row, numbers with three digits.
@@ -427,25 +425,23 @@ Findings all_hard_cases(const Examinee& solver) {
   if (!solver.backend.contestant) return {not_applicable(check, "for contestants only")};
   const StabilityPlan plan{{solver.backend.name}, hard_cases(hard_case_values("quick"))};
   const StabilityOutcome outcome = run_stability(plan, solver.options.seed, {});
-  int survived = 0, refused = 0, slow = 0, known = 0, unexpected = 0;
+  std::map<Outcome, int> ended;
   std::string advice;
   for (const StabilityCell& cell : outcome.cells) {
-    const Outcome o = cell.result.outcome;
-    survived += o == Outcome::survived || o == Outcome::survived_smaller;
-    refused += o == Outcome::refused;
-    slow += o == Outcome::timeout;
-    known += cell.known ? 1 : 0;
+    ++ended[cell.result.outcome];
     if (cell.expected || cell.known) continue;
-    ++unexpected;
     advice += text(advice.empty() ? "" : "\n", cell.hard_case->name, " (", cell.hard_case->what,
                    "): ", to_string(cell.result.fixed), ", ", cell.result.detail);
   }
-  return {
-      judged(unexpected == 0, check,
-             text(outcome.cells.size(), " cases: ", survived, " survived, ", refused, " refused, ",
-                  slow, " too slow; ", unexpected, " ended as they should not (allowed 0)",
-                  known == 0 ? "" : text(", besides ", known, " known ones")),
-             advice)};
+  const int unexpected = outcome.counts().new_differences,
+            known = outcome.counts().not_as_expected - unexpected;
+  return {judged(unexpected == 0, check,
+                 text(outcome.cells.size(),
+                      " cases: ", ended[Outcome::survived] + ended[Outcome::survived_smaller],
+                      " survived, ", ended[Outcome::refused], " refused, ", ended[Outcome::timeout],
+                      " too slow; ", unexpected, " ended as they should not (allowed 0)",
+                      known == 0 ? "" : text(", besides ", known, " known ones")),
+                 advice)};
 }
 
 struct Check {
@@ -477,16 +473,12 @@ std::vector<Finding> examine(const std::string& solver, const ConformanceOptions
           try {
             return check.run(examinee);
           } catch (const NotTaken& reason) {  // a scene that is not taken is none to examine it on
-            return Findings{{Finding::Grade::not_applicable, check.name,
-                             std::string("not taken: ") + reason.what(), ""}};
+            return Findings{not_applicable(check.name, std::string("not taken: ") + reason.what())};
           }
         },
         [](const nlohmann::json& list) { return list.get<Findings>(); },
         [&](const ChildOutcome& child) {
-          const std::string how = child.end == ChildOutcome::End::timed_out
-                                      ? "did not end within " + number_text(check.timeout) + " s"
-                                      : ending(child);
-          return Findings{{Finding::Grade::fail, check.name, how,
+          return Findings{{Grade::fail, check.name, ending(child),
                            "run it alone under a debugger: the checks are in "
                            "harness/stability/conformance.cpp"}};
         });
@@ -499,7 +491,7 @@ std::vector<Finding> examine(const std::string& solver, const ConformanceOptions
 }
 
 bool conforms(const std::vector<Finding>& findings) {
-  return std::ranges::count(findings, Finding::Grade::fail, &Finding::grade) == 0;
+  return std::ranges::count(findings, Grade::fail, &Finding::grade) == 0;
 }
 
 }  // namespace harness

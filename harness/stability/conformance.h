@@ -1,5 +1,5 @@
-// `bench check`: what every solver must hold, whatever its method, examined from outside and said
-// so that its author knows where to look.
+// `bench check`: what every solver must satisfy, whatever its method, checked from outside and
+// reported so that its author knows where to look.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct Finding {
 struct ConformanceOptions {
   std::uint64_t seed = 1;
   bool hard_cases = true;                                       // the longest part, up to minutes
-  std::function<void(const Finding&)> finding = [](auto&&) {};  // as soon as it is there
+  std::function<void(const Finding&)> finding = [](auto&&) {};  // as soon as it is known
   std::function<bool()> interrupted = nullptr;                  // asked some times a second
 };
 

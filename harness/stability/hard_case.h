@@ -36,8 +36,8 @@ struct HardCase {
   double value = unknown;                      // of a series of cases
   std::vector<Expectation> expectations = {};  // the last one is about everyone
 
-  // The first expectation about the solver. A method that promises no limit need not notice that
-  // no solution lies within it: where others refuse, it may survive.
+  // The first expectation about the solver. A method that promises no strain limit need not notice
+  // that no solution satisfies it: where others refuse, it may survive.
   Expectation expectation(const std::string& solver) const;
 };
 
@@ -48,11 +48,11 @@ using HardCaseValues = std::map<std::string, std::vector<double>>;
 
 // profile: quick, default or paper, which differ in how large chains and cloths grow.
 HardCaseValues hard_case_values(const std::string& profile);
-// values: all of the above.
+// values: lists under all of these names.
 std::vector<HardCase> hard_cases(const HardCaseValues& values);
-// Those of the file that hold for each case.
+// Adds the expectations of configs/hard_cases.json that apply to each case.
 void add_expectations(std::vector<HardCase>& cases);
-// configs/hard_cases.json. Throws UsageError where it is not as its schema says.
+// configs/hard_cases.json. Throws UsageError where it violates its schema.
 const nlohmann::json& hard_cases_document();
 
 // Outcomes of a solver that are known and are not what theory expects.
@@ -65,7 +65,7 @@ struct KnownDifference {
 };
 
 const std::vector<KnownDifference>& known_differences();
-// Null if this is a new one.
+// Null for a difference that is not listed.
 const KnownDifference* known_difference(const std::string& hard_case, const std::string& solver,
                                         const TrialResult& result);
 

@@ -57,11 +57,9 @@ LargestStep largest_step(const StabilityScene& scene, const std::string& solver,
 namespace {
 
 // Rank of the Jacobian of | d |^2 / l over all coordinates.
-int rank_of_jacobian(const cases::Mesh& mesh) {
+int rank_of_jacobian(const cases::Mesh& mesh, int constraints, int coordinates) {
   std::vector<Eigen::Triplet<double>> entries;
-  const auto rows = static_cast<int>(mesh.parts.edges.size()),
-             columns = static_cast<int>(3 * mesh.parts.mass.size());
-  for (int k = 0; k < rows; ++k) {
+  for (int k = 0; k < constraints; ++k) {
     const auto e = static_cast<std::size_t>(k);
     const auto [a, b] = mesh.parts.edges[e];
     const Eigen::Vector3d u =
@@ -71,7 +69,7 @@ int rank_of_jacobian(const cases::Mesh& mesh) {
       entries.emplace_back(k, 3 * b + axis, u[axis]);
     }
   }
-  Eigen::SparseMatrix<double> jacobian(rows, columns);
+  Eigen::SparseMatrix<double> jacobian(constraints, coordinates);
   jacobian.setFromTriplets(entries.begin(), entries.end());
   return static_cast<int>(Eigen::SPQR<Eigen::SparseMatrix<double>>(jacobian).rank());
 }
@@ -85,9 +83,9 @@ std::vector<Freedom> degrees_of_freedom(int n) {
                             {"midpoints", cases::midpoint_cloth(n)}}) {
     std::mt19937_64 random(1);
     cases::add_noise(mesh.start.x, {}, 0.2 / (n - 1), random);
-    const int rank = rank_of_jacobian(mesh);
     const auto edges = static_cast<int>(mesh.parts.edges.size()),
                coordinates = static_cast<int>(3 * mesh.parts.mass.size());
+    const int rank = rank_of_jacobian(mesh, edges, coordinates);
     list.push_back({name, n * n, edges, rank, coordinates - rank});
   }
   return list;
@@ -102,15 +100,10 @@ using inextensible::State;
 // Every step until shortly after first contact, which is early, then at the sample times of
 // references.
 constexpr double densely_until = 0.05;  // s
-constexpr double at_sample = 1e-9;      // s
 
 void add_distance(const Scene& scene, const State& a, const State& b, FrameDistances& series) {
   series.rms.push_back(rms_distance(scene, a.x, b.x));
   series.largest.push_back(max_distance(scene, a.x, b.x));
-}
-
-bool at_sample_time(double time) {
-  return std::abs(time - std::round(time / sample_interval) * sample_interval) < at_sample;
 }
 
 }  // namespace
@@ -122,8 +115,7 @@ std::string SameFrameScene::name() const {
 
 SameFrame same_frame(const SameFrameScene& wanted, std::uint64_t seed) {
   const Scene scene = built_scene(wanted.scene, {{"n", wanted.side}});
-  SameFrame found;
-  found.scene = wanted;
+  SameFrame found{.scene = wanted};
   struct Run {
     const char* solver;
     std::unique_ptr<inextensible::Stepper> stepper;
@@ -148,7 +140,7 @@ SameFrame same_frame(const SameFrameScene& wanted, std::uint64_t seed) {
     const double time = static_cast<double>(i) * wanted.step;
     if (std::isnan(found.first_contact) && runs[0].stepper->work().contacts > 0)
       found.first_contact = time;
-    if (time > densely_until && !at_sample_time(time)) continue;
+    if (time > densely_until && std::abs(std::remainder(time, sample_interval)) > 1e-9) continue;
     found.times.push_back(time);
     add_distance(scene, runs[0].state, runs[1].state, found.icd);
     add_distance(scene, runs[0].state, runs[2].state, found.moved_start);

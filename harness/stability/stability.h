@@ -27,8 +27,8 @@ struct StabilityCell {
   const KnownDifference* known = nullptr;  // of one that is not expected
 };
 
-// Whether a solver may end so. Theory knows nothing of a solver from outside: where others survive
-// it may also refuse or be slow, but a wrong result is one.
+// Whether theory admits the outcome. It knows nothing of solvers from outside: where others
+// survive, these may also refuse or be slow, but never be wrong.
 bool acceptable(const Expectation& expectation, const std::string& solver,
                 const TrialResult& result);
 
@@ -68,10 +68,9 @@ struct Freedom {
 std::vector<Freedom> degrees_of_freedom(int n);
 
 // Figure 6 of the paper by direct comparison (claim C8): one cloth at one step by fast projection,
-// by ICD, and by fast projection from a start that was moved by next to nothing, which tells how
-// far apart runs come that should be the same. A drape falls freely until it touches the sphere;
-// the patch hangs from two pins, so that constraints act on it from the first step on, and nothing
-// else does.
+// by ICD, and by fast projection from a slightly moved start, which shows how far runs that should
+// agree drift apart. A drape falls freely until it touches the sphere; the patch hangs from two
+// pins, so that only constraints act on it, from the first step on.
 struct SameFrameScene {
   std::string scene;    // "drape" or "patch"
   int side;             // vertices along the cloth
@@ -134,8 +133,8 @@ inline std::string cell_key(const std::string& hard_case, const std::string& sol
   return hard_case + "/" + solver;
 }
 
-// Cells are kept under their keys; `events.done` hears of everything else too, with nothing to
-// count. The plan must outlive the outcome.
+// Results are kept under their cells' keys; `events.done` also reports everything else, without
+// counts. The plan must outlive the outcome.
 StabilityOutcome run_stability(const StabilityPlan& plan, std::uint64_t seed,
                                const RunEvents& events);
 

@@ -27,10 +27,9 @@ TrialJudge::TrialJudge(const Trial& trial, const inextensible::Backend& backend,
       limit_promised_(backend.strain_control == inextensible::StrainControl::strain_limit),
       mass_(problem_.total_mass()),
       free_(backend.conserves_momentum && problem_.pinned().empty() && !problem_.collider()),
+      energy_known_(strain_range(problem_, trial.scene.start.x).most <= trial.strain_limit),
       energy_(problem_, energy_scale(trial.scene), backend.velocities) {
   judged_ = trial.energy_tolerance >= 0 && !trial.disturb && energy_.scale() > 0;
-  // What a start that violates the limit releases is known after the first step.
-  energy_known_ = strain_range(problem_, trial.scene.start.x).most <= trial.strain_limit;
   energy_.begin(trial.scene.start);
 }
 
@@ -211,18 +210,15 @@ TrialResult run_trial(const std::function<Trial()>& build, const std::string& so
     if (result.fixed == Outcome::refused) {
       TrialResult again;
       again.outcome = attempt(trial, backend, seed, true, again);
-      again.fixed = result.fixed;
       if (again.outcome == Outcome::survived) again.outcome = Outcome::survived_smaller;
       again.detail = result.detail + (again.detail == result.detail || again.detail.empty()
                                           ? ""
                                           : "; with smaller steps: " + again.detail);
       result = std::move(again);
     }
-  } catch (const std::invalid_argument& error) {
-    result.fixed = result.outcome = Outcome::refused;
+  } catch (const std::invalid_argument& error) {  // refused, as results are at first
     result.detail = std::string("at the door: ") + error.what();
   } catch (const std::bad_alloc&) {
-    result.fixed = result.outcome = Outcome::refused;
     result.detail = "an allocation failed";
   }
   result.seconds = since(begin);
@@ -259,11 +255,10 @@ TrialResult run_isolated_trial(const std::function<Trial()>& build, const std::s
       [&](Heartbeat& /*heartbeat*/) { return to_json(run_trial(build, solver, seed)); },
       trial_result_of,
       [](const ChildOutcome& child) {
-        const bool stuck = child.end == ChildOutcome::End::timed_out;
         TrialResult result;
-        result.fixed = result.outcome = stuck ? Outcome::timeout : Outcome::crashed;
-        result.detail =
-            stuck ? "a step did not end within " + number_text(longest) + " s" : ending(child);
+        result.fixed = result.outcome =
+            child.end == ChildOutcome::End::timed_out ? Outcome::timeout : Outcome::crashed;
+        result.detail = ending(child);
         return result;
       });
 }

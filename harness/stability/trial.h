@@ -40,8 +40,8 @@ struct Trial {
   double step = 0.01;  // s
   int steps = 1;
   double strain_limit = 0.01;
-  // N, of methods controlled by stiffness: as they promise no limit, one that would keep it.
-  // Their own default where this is unknown.
+  // N, of methods that are controlled by stiffness and promise no limit: one that would keep it.
+  // Unknown: their default.
   double stiffness = unknown;
   std::map<std::string, inextensible::Settings> settings;  // by solver
   // Changes the state before a step (moves a pin, adds noise). Energy is then not judged.
@@ -50,13 +50,13 @@ struct Trial {
   // energy at the start). Negative: not judged. A start that violates the limit sets energy free in
   // its first step; it is judged from there on.
   double energy_tolerance = 0.05;
-  // m: how far vertices may go within the permissible band. A filter may take all of it back in one
+  // m: how far vertices may move within the strain limit. A filter may undo all of it in one
   // step of h seconds, which makes kinetic energy of up to M (1.5 slack / h)^2 / 2 on top of the
   // above (1.5: the velocity of BDF2; 1 for one-step methods).
   double slack = 0;
   double momentum_tolerance = 1e-8;  // relative to what flows in a step
-  // s of wall time, looked at between steps. At its own step a trial ends by itself; this is for a
-  // machine that is busy. With smaller steps it may take as long as it likes.
+  // s of wall time, checked between steps. At its own step a trial ends by itself; the first limit
+  // is for a busy machine. With smaller steps there is no other limit.
   double timeout = 60, timeout_smaller = 10;
 };
 
@@ -84,7 +84,7 @@ TrialResult run_isolated_trial(const std::function<Trial()>& build, const std::s
                                std::uint64_t seed,
                                const std::function<bool()>& interrupted = nullptr);
 
-// By its name; the way back throws json::exception for what is none.
+// By its name; reading throws json::exception for any other text.
 inline void to_json(nlohmann::json& name, Outcome outcome) { name = to_string(outcome); }
 void from_json(const nlohmann::json& name, Outcome& outcome);
 

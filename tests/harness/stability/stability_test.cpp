@@ -87,43 +87,38 @@ TEST(TrialJudge, SeesEnergyBeyondToleranceAndSlack) {
   EXPECT_EQ(gaining(1e4).outcome, Outcome::survived);
 }
 
-std::vector<HardCase> cases_of(const char* profile) {
-  return harness::hard_cases(harness::hard_case_values(profile));
-}
-
-const HardCase& named(const std::vector<HardCase>& cases, const std::string& name) {
-  return *std::find_if(cases.begin(), cases.end(), [&](const auto& c) { return c.name == name; });
+std::vector<HardCase> all_cases() {
+  return harness::hard_cases(harness::hard_case_values("paper"));
 }
 
 TEST(HardCases, HaveUniqueNamesAndReasonedExpectationsAboutSolversThatExist) {
   std::set<std::string> names;
-  for (const HardCase& c : cases_of("paper")) {
+  for (const HardCase& c : all_cases()) {
     EXPECT_TRUE(names.insert(c.name).second) << c.name << " twice";
     ASSERT_TRUE(!c.expectations.empty() && c.expectations.back().solvers.empty()) << c.name;
     for (const auto& e : c.expectations) {
       EXPECT_FALSE(e.other && e.other->outcome == e.outcome) << c.name;
       for (const std::string& word : e.solvers)
-        EXPECT_TRUE(
-            std::ranges::any_of(inextensible::backends(),
-                                [&](const auto& b) {
-                                  return harness::Expectation{{word}, e.outcome, ""}.about(b);
-                                }))
+        EXPECT_TRUE(std::ranges::any_of(inextensible::backends(),
+                                        [one = harness::Expectation{{word}, e.outcome, ""}](
+                                            const auto& b) { return one.about(b); }))
             << c.name << ": " << word;
     }
   }
 }
 
 TEST(KnownDifferences, AreOfCasesAndSolversThatExistAndDifferFromWhatIsExpected) {
-  const auto cases = cases_of("paper");
+  const auto cases = all_cases();
   for (const harness::KnownDifference& known : harness::known_differences()) {
     ASSERT_NE(inextensible::find_backend(known.solver), nullptr) << known.solver;
     for (const std::string& name : known.hard_cases) {
-      ASSERT_TRUE(std::ranges::count(cases, name, &HardCase::name)) << name;
+      const auto hard_case = std::ranges::find(cases, name, &HardCase::name);
+      ASSERT_NE(hard_case, cases.end()) << name;
       TrialResult result;
       result.fixed = known.fixed;
       result.outcome = known.outcome;
-      const auto expected = named(cases, name).expectation(known.solver);
-      EXPECT_FALSE(harness::acceptable(expected, known.solver, result)) << name;
+      EXPECT_FALSE(harness::acceptable(hard_case->expectation(known.solver), known.solver, result))
+          << name;
       EXPECT_EQ(harness::known_difference(name, known.solver, result), &known);
     }
   }
