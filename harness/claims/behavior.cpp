@@ -240,25 +240,23 @@ Verdict garment_slip(const Points& points) {
 
 Verdict springs_stiffness(const Points& points) {
   Verdict found;
-  using Places = std::map<std::pair<std::string, double>, std::vector<double>>;
-  std::map<double, Places> by_step;  // then by scene and vertices
+  std::map<double, std::vector<Point>> by_step;
   for (const Point& p : points.all) {
-    if (calibrated(p))
-      by_step[p.step()][{p.scene(), p.vertices()}].push_back(tension_over_weight(p));
+    if (calibrated(p)) by_step[p.step()].push_back(p);
   }
   if (by_step.empty()) return {};
-  const auto [step, places] = *std::ranges::max_element(by_step, {}, [](const auto& at) {
-    std::size_t all = 0;
-    for (const auto& [place, here] : at.second) all += here.size();
-    return all;
-  });
-  for (const Point& p : points.all) {
-    if (calibrated(p) && p.step() == step) found.points.push_back(p.id());
+  const auto most_of = [](const auto& groups) {
+    return *std::ranges::max_element(groups, {}, [](const auto& g) { return g.second.size(); });
+  };
+  const auto [step, runs] = most_of(by_step);
+  if (runs.size() < 3) return {};
+  std::map<std::pair<std::string, double>, std::vector<double>> places;  // scene and vertices
+  for (const Point& p : runs) {
+    places[{p.scene(), p.vertices()}].push_back(tension_over_weight(p));
+    found.points.push_back(p.id());
   }
-  if (found.points.size() < 3) return {};
   // Where most was calibrated at one step: what it says is to be true elsewhere.
-  const auto [known, there] =
-      *std::ranges::max_element(places, {}, [](const auto& at) { return at.second.size(); });
+  const auto [known, there] = most_of(places);
   double log_sum = 0;
   for (const double tension : there) log_sum += std::log(tension);
   const double expected = std::exp(log_sum / static_cast<double>(there.size()));
