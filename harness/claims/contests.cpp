@@ -31,26 +31,32 @@ Slope slope_of(const Curve& curve) {
   return log_log_slope(x, y);
 }
 
-// Ratio of a's seconds to b's, where both have a point: its interval is the wider one of what the
-// scatter about the line and what the ratios' own intervals give.
-Slope slope_of_ratio(const Curve& a, const Curve& b) {
-  std::vector<double> x, y, half_widths;
+// Ratios of a's seconds to b's by the value on the axis, where both have a point.
+std::vector<std::pair<double, Ratio>> ratios_of(const Curve& a, const Curve& b) {
+  std::vector<std::pair<double, Ratio>> ratios;
   for (const auto& [place, point] : a) {
-    const auto other = at(b, place);
-    if (!other) continue;
-    const Ratio over = ratio(point, *other);
+    if (const auto other = at(b, place)) ratios.emplace_back(place, ratio(point, *other));
+  }
+  return ratios;
+}
+
+// The slope's interval is the wider of what the scatter about the line and what the ratios' own
+// intervals give.
+Slope slope_of(const std::vector<std::pair<double, Ratio>>& ratios) {
+  std::vector<double> x, y;
+  double mean = 0, squares = 0, spread = 0;
+  for (const auto& [place, ratio] : ratios) {
     x.push_back(place);
-    y.push_back(over.value);
-    half_widths.push_back(over.known() ? 0.5 * std::log(over.high / over.low) : 0);
+    y.push_back(ratio.value);
+    mean += std::log(place) / static_cast<double>(ratios.size());
+  }
+  for (const auto& [place, ratio] : ratios) {
+    const double distance = std::log(place) - mean;
+    const double half_width = ratio.known() ? 0.5 * std::log(ratio.high / ratio.low) : 0;
+    squares += distance * distance;
+    spread += distance * distance * half_width * half_width;
   }
   Slope slope = log_log_slope(x, y);
-  double mean = 0, squares = 0, spread = 0;
-  for (const double at : x) mean += std::log(at) / static_cast<double>(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double distance = std::log(x[i]) - mean;
-    squares += distance * distance;
-    spread += distance * distance * half_widths[i] * half_widths[i];
-  }
   if (squares > 0) slope.half_width = std::max(slope.half_width, std::sqrt(spread) / squares);
   return slope;
 }
@@ -58,17 +64,14 @@ Slope slope_of_ratio(const Curve& a, const Curve& b) {
 // How the ratio of times changes along the axis, and the ratio at both ends.
 Verdict growth(const Curve& springs, const Curve& fast,
                Answer (*fast_is_better)(const Slope&, double), std::string (*place)(double)) {
-  const Slope slope = slope_of_ratio(springs, fast);
+  const auto ratios = ratios_of(springs, fast);
+  const Slope slope = slope_of(ratios);
   if (slope.points < 3) return {};
   Verdict found{verdict_of(fast_is_better(slope, 0)),
                 "slope of springs' time over fast projection's " + text(slope),
                 ids_of({springs, fast})};
-  std::vector<double> common;
-  for (const auto& [x, point] : springs) {
-    if (at(fast, x)) common.push_back(x);
-  }
-  for (const double x : {common.front(), common.back()})
-    found.measured += ", ratio " + text(ratio(*at(springs, x), *at(fast, x))) + " at " + place(x);
+  for (const auto& [x, ratio] : {ratios.front(), ratios.back()})
+    found.measured += ", ratio " + text(ratio) + " at " + place(x);
   return found;
 }
 
@@ -146,7 +149,7 @@ Verdict drape_over_strain(const Points& points, double level, double vertices) {
       append(slopes, std::string(method.words) + " " + text(slope_of(curve)));
       evidence.push_back(curve);
       for (const Curve& other : limiting) {
-        const Slope slope = slope_of_ratio(other, curve);
+        const Slope slope = slope_of(ratios_of(other, curve));
         if (slope.points >= 3) flatter.push_back(below(slope, 0));
       }
     }
@@ -258,24 +261,21 @@ Verdict drape_time_over_resolution(const Points& points) {
     std::vector<Answer> sizes;
     for (const auto& [vertices, point] : fast) {
       std::vector<Answer> here;
-      std::string rival;
-      Ratio closest;
+      std::map<double, std::string> rivals;  // by their time over fast projection's
       for (const auto& [words, curve] : others) {
         const auto other = at(curve, vertices);
         if (!other) continue;
         const Ratio slower = ratio(*other, point);
         here.push_back(above(slower, 1));
-        if (!rival.empty() && slower.value >= closest.value) continue;
-        closest = slower;
-        rival = words;
+        rivals.try_emplace(slower.value, words + " takes " + text(slower));
       }
       if (here.empty()) continue;
       sizes.push_back(all_of(here));
       const char* word = sizes.back() == Answer::yes  ? "fastest"
                          : sizes.back() == Answer::no ? "not fastest"
                                                       : "undecided";
-      append(details, count_of(vertices) + ": " + word + ", " + rival + " takes " + text(closest) +
-                          " of its time");
+      append(details,
+             count_of(vertices) + ": " + word + ", " + rivals.begin()->second + " of its time");
     }
     if (fast.size() < 2 || sizes.empty()) return {};
     const Answer all = all_of(sizes), largest = sizes.back();
