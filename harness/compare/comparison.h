@@ -176,12 +176,9 @@ struct PairedPoint {
 using RunOne = std::function<ComparedPoint(Side, const PairedPoint&)>;
 
 // `pairs` rounds over all points; the sides take turns in coming first (ABBA). A point that has
-// failed on either side is left alone from then on.
-void run_pairs(const std::vector<PairedPoint*>& points, int pairs, const RunOne& run);
-
-// run_pairs, then once more, from scratch, with `confirming` pairs for points whose times have
-// changed: only what is found both times counts. "Same" is said only where the 95 % interval of the
-// times' ratio stays within what the gate lets pass.
+// failed on either side is left alone from then on. Then points whose times have changed are timed
+// again, from scratch, in `confirming` pairs: only what is found both times counts. "Same" is said
+// only where the 95 % interval of the times' ratio stays within what the gate lets pass.
 Comparison compare_in_pairs(std::vector<PairedPoint> points, int pairs, int confirming,
                             const Gate& gate, const Comparability& can, const RunOne& run);
 

@@ -25,6 +25,15 @@ void run_side(Side side, PairedPoint& point, const RunOne& run) {
   said.samples = std::move(times);
 }
 
+void run_pairs(const std::vector<PairedPoint*>& points, int pairs, const RunOne& run) {
+  for (int pair = 0; pair < pairs; ++pair) {
+    for (PairedPoint* point : points) {
+      run_side(pair % 2 == 0 ? Side::old_one : Side::new_one, *point, run);
+      run_side(pair % 2 == 0 ? Side::new_one : Side::old_one, *point, run);
+    }
+  }
+}
+
 // "Same" is a statement: it takes runs on both sides, and times that exclude a change as large as
 // the gate counts.
 PointChange without_false_same(PointChange result, const PairedPoint& point, const Gate& gate) {
@@ -64,15 +73,6 @@ PointChange judge_again(const PairedPoint& point, Change first, const Gate& gate
 }
 
 }  // namespace
-
-void run_pairs(const std::vector<PairedPoint*>& points, int pairs, const RunOne& run) {
-  for (int pair = 0; pair < pairs; ++pair) {
-    for (PairedPoint* point : points) {
-      run_side(pair % 2 == 0 ? Side::old_one : Side::new_one, *point, run);
-      run_side(pair % 2 == 0 ? Side::new_one : Side::old_one, *point, run);
-    }
-  }
-}
 
 Comparison compare_in_pairs(std::vector<PairedPoint> points, int pairs, int confirming,
                             const Gate& gate, const Comparability& can, const RunOne& run) {
