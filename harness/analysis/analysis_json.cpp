@@ -77,11 +77,10 @@ static void to_json(json& to, const Plane& plane) {
 }
 
 static void to_json(json& to, const RowGrowth& row) {
-  const bool sure = std::isfinite(row.exponent.half_width);
   to = {{"row", row.row},
         {"exponent", number(row.exponent.value)},
-        {"low", sure ? json(row.exponent.low()) : json()},
-        {"high", sure ? json(row.exponent.high()) : json()},
+        {"low", number(row.exponent.low())},  // null, as infinite, of two sizes
+        {"high", number(row.exponent.high())},
         {"sizes", row.exponent.points},
         {"smallest", row.smallest.vertices()},
         {"largest", row.largest.vertices()}};
@@ -147,22 +146,16 @@ std::string failure_letters(const std::vector<Point>& runs, double limit, double
 }
 
 // A figure for each scene and sweep, and for what the sweep leaves fixed: vertices, or the limit.
-void add_curves(json& list, const Runs& runs, const std::vector<Plane>& planes, bool adaptive) {
-  std::vector<Point> points = runs.points;
-  std::erase_if(points, [&](const Point& p) {
-    return p.spec().adaptive != adaptive || runs.roles.of(p.contestant()).again;
-  });
-  std::ranges::stable_sort(points, std::greater(), [](const Point& p) { return p.spec().step; });
+void add_curves(json& list, const ContestantRoles& roles, const std::vector<Plane>& planes,
+                bool adaptive) {
   std::map<std::tuple<std::string, std::string, double>, json> figures;
   for (const Plane& plane : planes) {
     const bool sizes = plane.sweep == "resolution";
     if (!sizes && plane.sweep != "strain") continue;
-    std::map<std::string, std::vector<Point>> own_runs;
-    for (const Point& p : points) {
-      if (p.spec().scene == plane.scene && p.spec().sweep == plane.sweep &&
-          p.spec().vertices == plane.vertices)
-        own_runs[p.contestant()].push_back(p);
-    }
+    std::vector<Point> points = plane.points;
+    std::erase_if(points, [&](const Point& p) { return roles.of(p.contestant()).again; });
+    std::ranges::stable_sort(points, std::greater(), &Point::step);
+    const auto own_runs = grouped(points, &Point::contestant);
     for (const double limit : plane.limits) {
       const double fixed = sizes ? limit : plane.vertices, x = sizes ? plane.vertices : limit;
       json& figure = figures[{plane.scene, plane.sweep, fixed}];
@@ -192,8 +185,8 @@ void add_curves(json& list, const Runs& runs, const std::vector<Plane>& planes, 
 json analysis_of(const Runs& runs) {
   const std::vector<Plane> planes = planes_of(runs);
   json curves = json::array();  // runs with a step controller have figures of their own
-  add_curves(curves, runs, planes, false);
-  add_curves(curves, runs, planes_of(runs, true), true);
+  add_curves(curves, runs.roles, planes, false);
+  add_curves(curves, runs.roles, planes_of(runs, true), true);
   return {{"schema", "inextensible-analysis/1"}, {"headline_error", headline_error},
           {"findings", findings_of(planes)},     {"planes", planes},
           {"curves", std::move(curves)},         {"growth", growth_in(planes)},

@@ -92,8 +92,9 @@ void take_tighter_runs(std::vector<Cell>& cells, std::size_t levels) {
 
 Plane plane_of(const std::vector<Point>& points, const Runs& runs) {
   const PointSpec& one = points.front().spec();
-  Plane plane{one.scene,    one.sweep, one.scene_parameters, one.resolution,
-              one.vertices, {},        runs.levels,          {}};
+  Plane plane{one.scene,      one.sweep,    one.scene_parameters,
+              one.resolution, one.vertices, {},
+              runs.levels,    {},           points};
   auto by_limit = grouped(points, &Point::strain_limit);
   std::ranges::sort(by_limit, std::greater(), [](const auto& group) { return group.first; });
   for (const auto& [limit, here] : by_limit) {

@@ -67,6 +67,7 @@ struct Plane {
   std::vector<double> limits;  // loose to tight
   std::vector<double> levels;  // any_motion, then loose to tight
   std::vector<Cell> cells;     // by limit, then by level
+  std::vector<Point> points;   // in the file's order
 
   const Cell& cell(double limit, double level) const;
 };

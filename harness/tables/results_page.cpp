@@ -98,15 +98,14 @@ void print_attribution(std::ostream& out, const Plane& plane) {
 
 // How much of each method's least error at 1 % is slack: what a limit of 0.1 % takes away at the
 // same step.
-void print_slack(std::ostream& out, const Runs& runs, const Plane& plane) {
+void print_slack(std::ostream& out, const ContestantRoles& roles, const Plane& plane) {
   constexpr double loose = 0.01, tight = 0.001;
-  const auto kept_limit = [&plane](const Point& p, double limit) {
-    return p.ok() && p.strain_limit() == limit && p.scene() == plane.scene &&
-           p.vertices() == plane.vertices && p.sweep() == plane.sweep;
+  const auto kept_limit = [](const Point& p, double limit) {
+    return p.ok() && p.strain_limit() == limit;
   };
   std::string text;
-  for (const auto& [name, own] : grouped(runs.points, &Point::contestant)) {
-    if (!runs.roles.of(name).ranked()) continue;
+  for (const auto& [name, own] : grouped(plane.points, &Point::contestant)) {
+    if (!roles.of(name).ranked()) continue;
     double error = unknown, kept = unknown;
     for (const Point& p : own) {
       const auto tighter = std::ranges::find_if(
@@ -143,7 +142,7 @@ void print_planes(std::ostream& out, const std::vector<json>& sweeps) {
     out << span_of_errors(planes);
     for (const Plane& plane : planes) {
       if (plane.sweep == "strain") print_attribution(out, plane);
-      if (plane.scene == "settling_drape") print_slack(out, runs, plane);
+      if (plane.scene == "settling_drape") print_slack(out, runs.roles, plane);
     }
     out << "\n\n";
     print_markdown(out, table_of(planes));
