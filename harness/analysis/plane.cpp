@@ -26,7 +26,7 @@ bool is_of_paper(const std::string& method) {
                              [&](const PaperMethod& known) { return method == known.name; });
 }
 
-// Why there is no entry: the first of the reasons that holds of all.
+// Why a cell has no entry: the first reason that applies to all runs.
 std::string why_empty(const std::vector<Point>& here, double level, double known_until) {
   const auto any = [&](auto has) { return std::ranges::any_of(here, has); };
   if (!any(may_answer)) return "no run keeps the strain limit";
@@ -39,7 +39,7 @@ std::string why_empty(const std::vector<Point>& here, double level, double known
              : "the file has no errors";
 }
 
-// An unranked contestant and its solver are one row, of which the fastest counts.
+// An unranked contestant shares its solver's row, in which only the fastest counts.
 void rank(std::vector<Entry>& entries) {
   std::ranges::stable_sort(entries, {}, [](const Entry& e) { return e.point.seconds(); });
   std::vector<std::string> rows;
@@ -68,9 +68,8 @@ Cell cell_of(const std::vector<Point>& here, double limit, double level,
   return cell;
 }
 
-// A run that keeps a tighter limit keeps this one: each contestant's fastest run at the cell's
-// limit or a tighter one stands for it. cells: of one scene and size, by limit from loose to tight,
-// then by level.
+// A run that keeps a tighter limit keeps a looser one as well: each contestant's fastest run at the
+// cell's limit or a tighter one counts. cells: by limit from loose to tight, then by level.
 void take_tighter_runs(std::vector<Cell>& cells, std::size_t levels) {
   for (std::size_t i = cells.size(); i-- > levels;) {
     const Cell& tight = cells[i];
@@ -106,7 +105,7 @@ Plane plane_of(const std::vector<Point>& points, const Runs& runs) {
   return plane;
 }
 
-// Wall time that 99 % of the frames stay within, s; not-a-number: not measured.
+// 99th percentile of the frames' wall times, s; not-a-number: not measured.
 double frame_seconds(const Point& point) {
   for (const FrameTime& frame : point.result().frame_times) {
     if (frame.rate == frame_rate) return frame.slow;
@@ -114,14 +113,13 @@ double frame_seconds(const Point& point) {
   return std::nan("");
 }
 
-// What sorts the runs that reach the most first; those of no run come last.
+// Sort key: the best reach first, a missing one last.
 std::tuple<int, double, double> worth(const std::optional<Reach>& r) {
   if (!r) return {2, 0, 0};
   const double error = std::isnan(r->error) ? std::numeric_limits<double>::infinity() : r->error;
   return r->right ? std::tuple(0, r->strain_limit, error) : std::tuple(1, error, -r->strain_limit);
 }
 
-// By the largest budget first.
 std::vector<std::tuple<int, double, double>> rank_of(const Budgeted& row) {
   std::vector<std::tuple<int, double, double>> rank;
   for (const auto& reach : row.reached) rank.insert(rank.begin(), worth(reach));

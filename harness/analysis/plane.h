@@ -1,6 +1,5 @@
 // The question of docs/measuring.md, answered from a result file: which method is fastest such that
 // no edge is strained by more than a limit and the motion error is within a level.
-// Computed here once; tables, figures and pages print it.
 #pragma once
 
 #include <array>
@@ -12,23 +11,21 @@
 
 namespace harness::analysis {
 
-// The run that stands for a contestant at a strain limit and a level of error (any_motion:
-// whatever its error): the one that its sweep marked, in files without such marks the fastest. Only
-// runs that kept their limit count, with steps of a frame at most. points: of one contestant,
-// scene, size and limit.
+// A contestant's best run within a level of error: the one that its sweep marked, or the fastest in
+// files without marks. Only runs that kept their limit count, with steps of at most a frame.
+// points: of one contestant, scene, size and limit.
 std::optional<Point> fastest_of(const std::vector<Point>& points, double level);
 
-// What stands for one contestant in a cell: its fastest run at the cell's strain limit or at a
-// tighter one, which keeps the cell's as well.
+// A contestant's fastest run at a cell's strain limit or a tighter one.
 struct Entry {
   Role role;
-  std::string row;      // whose row it stands in: an unranked contestant's is its solver's
-  bool counts = false;  // the fastest of its row; not of the second of an A/A pair
+  std::string row;      // role.row()
+  bool counts = false;  // fastest of its row, and not the second of an A/A pair
   Point point;
   double error = unknown;  // at the cell's level; of any motion at the headline's
 };
 
-// Whom the first of a cell is compared with: the fastest of those that count and that are so.
+// With whom the first of a cell is compared: the fastest counting entry of each kind.
 enum class Rival {
   next_family,         // of another family
   paper_best,          // one of the paper's six as published
@@ -72,20 +69,20 @@ struct Plane {
   const Cell& cell(double limit, double level) const;
 };
 
-// In the order of runs; of those with a step controller, or of those without.
+// In the order of runs. adaptive: of runs with a step controller, instead of those without.
 std::vector<Plane> planes_of(const Runs& runs, bool adaptive = false);
 
 // ---- Budgets: the tightest strain limit, and its error, within a frame budget ----
 
 inline constexpr double frame_rate = 60;  // frames a second
 
-// The run that a method reaches the most with: the tightest strain limit whose motion is right to
-// the headline's error, and of these runs the one of least error; without such a run, the one of
-// least error at the loosest limit.
+// A method's best run within a budget: the tightest strain limit at which the motion error is at
+// most the headline's, then the least error; without such a run, the least error at the loosest
+// limit.
 struct Reach {
   double strain_limit, error;  // error: not-a-number if it is not known
-  double frame_seconds;        // 99 % of frames take at most that
-  bool right;                  // to the headline's error
+  double frame_seconds;        // 99th percentile
+  bool right;                  // error at most the headline's
   Point point;
 };
 
@@ -95,7 +92,7 @@ struct Budgeted {
   std::vector<std::optional<Reach>> reached;  // one for each budget; none: no run is that fast
 };
 
-// One scene and size. Rows: tightest strain at the largest budget first.
+// One scene and size. Rows: tightest strain limit at the largest budget first.
 struct BudgetTable {
   std::string scene;
   int resolution = 0, vertices = 0;

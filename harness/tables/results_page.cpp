@@ -24,7 +24,7 @@ namespace {
 
 std::string quoted(const std::string& name) { return '`' + name + '`'; }
 
-// As number_text(), but never with a power of ten where the number has more digits.
+// number_text(), but large numbers are written out rather than with a power of ten.
 std::string plain(double value, int digits) {
   const bool large = value >= 1 && std::isfinite(value);
   return number_text(value, std::max(digits, large ? static_cast<int>(std::log10(value)) + 1 : 1));
@@ -72,8 +72,8 @@ Table table_of(const std::vector<Plane>& planes) {
   return table;
 }
 
-// How much of the lead at the headline's error is the time stepper's, and how much the method's: at
-// 1 % strain. The figure has all limits.
+// Splits the lead at 1 % strain and the headline's error between time stepper and method. The
+// figure has all limits.
 void print_attribution(std::ostream& out, const Plane& plane) {
   constexpr double limit = 0.01;
   for (const Cell& cell : plane.cells) {
@@ -96,8 +96,7 @@ void print_attribution(std::ostream& out, const Plane& plane) {
   }
 }
 
-// How much of each method's least error at 1 % is slack: what a limit of 0.1 % takes away at the
-// same step.
+// The slack in each method's least error at 1 %: what a limit of 0.1 % removes at the same step.
 void print_slack(std::ostream& out, const ContestantRoles& roles, const Plane& plane) {
   constexpr double loose = 0.01, tight = 0.001;
   const auto kept_limit = [](const Point& p, double limit) {
@@ -126,7 +125,6 @@ void print_slack(std::ostream& out, const ContestantRoles& roles, const Plane& p
         << " takes away at the same step: " << text << ". ";
 }
 
-// The strain-error grid of each scene.
 void print_planes(std::ostream& out, const std::vector<json>& sweeps) {
   if (sweeps.empty()) return;
   const Runs runs(joined(sweeps));
@@ -182,7 +180,7 @@ void print_growth(std::ostream& out, const std::vector<json>& sweeps) {
               table);
 }
 
-// What else a scene has to tell, of the fastest run of each contestant that is ranked.
+// Further measurements of a scene, from the fastest run of each ranked contestant.
 struct SceneTable {
   const char *scene, *title, *unit;
   std::string (*introduction)(const Point& one, const std::vector<double>& limits);
@@ -208,7 +206,6 @@ std::string sag_of(const Point& p) {
          plain(p.measures().rest_speed, 2) + ")";
 }
 
-// Where the rim of a garment ends up.
 std::string about_slip(const Point&, const std::vector<double>&) {
   return "How far the garment's rim is below the waist, where it began, mean over the last third "
          "of the run, of the way to the hips: above 100 % it has slipped past them. In brackets "
@@ -249,8 +246,8 @@ void print_scene(std::ostream& out, const NamedResult& result, const SceneTable&
               table);
 }
 
-// What solvers make of figures that theory knows: a row an answer, of each solver the finest step
-// that it finished. `bench show` has each solver.
+// One row per known answer, from the finest step that each solver finished. `bench show` lists
+// every solver.
 void print_answers(std::ostream& out, const NamedResult& result) {
   Table table{
       {"answer", "scene, strain limit", "exact", "finished", "nearest", "farthest", "order"}, {}};
@@ -306,7 +303,6 @@ void print_hard_cases(std::ostream& out, const NamedResult& result) {
   out << '\n';
 }
 
-// What the result files say of themselves: date, machine, commit and noise.
 void print_sources(std::ostream& out, const std::vector<NamedResult>& results) {
   Table table{{"file", "date", "processor", "commit", "A/A pair", "places", "half", "95 %"}};
   for (const NamedResult& result : results) {
@@ -326,7 +322,7 @@ void print_sources(std::ostream& out, const std::vector<NamedResult>& results) {
   print_markdown(out, table);
 }
 
-// "0.1 %, error 1.2 %"; in brackets where the motion is not right to the headline's error.
+// "0.1 %, error 1.2 %"; in parentheses if the error exceeds the headline's.
 std::string reach_text(const std::optional<Reach>& reach) {
   if (!reach) return "-";
   const std::string text =

@@ -14,31 +14,27 @@ namespace harness {
 
 // ---- On a terminal ----
 
-// A sweep's result. For each scene and size a line for each answer of the
-// strain-error grid, levels of error with the same answer in one; its findings
-// (analysis/findings.h), of resolution sweeps the growth of a step's time; how much of that is
-// noise. all: every contestant too, fastest first, and how the runs that failed ended. file: what
-// the document is called in hints.
+// For each scene and size the answers of the strain-error grid (levels of error with the same
+// answer share a line), findings, and the growth of a step's time with resolution; then the noise.
+// all: also every contestant, fastest first, and how failed runs ended. file: its name in hints.
 void print_sweep(std::ostream& out, const nlohmann::json& document, const std::string& file,
                  bool all = false);
-// How each solver's hard cases ended, which did not end as expected, and its largest stable steps.
+// How each solver's hard cases ended, the unexpected outcomes, and the largest stable steps.
 void print_outcomes(std::ostream& out, const nlohmann::json& document);
 
 // ---- In Markdown ----
 
-// results: of sweeps and stability sweeps; the claims are decided by these. growth: only for tables
-// of growth, so that a sweep at a fixed step does not take part in contests of best steps. answers:
-// of `bench answers`.
-// Throws UsageError for documents that lack something.
+// results: sweeps and stability sweeps, which decide the claims. growth: sweeps for tables of
+// growth alone, since a sweep at a fixed step has no place in contests of best steps. answers:
+// results of `bench answers`. Throws UsageError for incomplete documents.
 void print_results_page(std::ostream& out, const std::vector<NamedResult>& results,
                         const std::vector<NamedResult>& growth,
                         const std::vector<NamedResult>& answers = {});
 void print_budgets(std::ostream& out, const std::vector<analysis::BudgetTable>& tables);
 
-// ---- What both have in common ----
+// ---- Shared by both ----
 
-// Hard cases: how many of each solver's ended in which way; and what did not end as theory
-// expects, with the reason where one is known.
+// Hard cases: counts of outcomes by solver; and unexpected outcomes with their reasons if known.
 Table outcomes_in(const nlohmann::json& document);
 Table differences_in(const nlohmann::json& document);
 

@@ -23,7 +23,6 @@ std::string levels_text(const Cell& loosest, const Cell& tightest) {
   return from.substr(0, from.find(" %")) + " to " + level_text(tightest.level);
 }
 
-// How the best of the paper's six compares.
 std::string lead_text(const Cell& cell) {
   const Entry* paper = cell.rival(Rival::paper_best);
   if (!paper) return "none of the six";
@@ -41,7 +40,6 @@ std::string percent_or_unknown(double fraction) {
   return std::isnan(fraction) ? "?" : number_text(100 * fraction, 2) + " %";
 }
 
-// Name, time, step and error.
 std::vector<std::string> entry_cells(const Entry& entry, const std::string& name) {
   return {name, time_words(entry.point.seconds()), step_text(entry.point.step()),
           percent_or_unknown(entry.error)};
@@ -59,7 +57,7 @@ std::vector<std::string> answer_row(const std::string& place, const Cell& looses
   return row;
 }
 
-// A row for each answer; levels of error that have the same one are one row.
+// Consecutive error levels with the same answer share a row.
 void add_answers(Table& table, const Plane& plane, bool sizes) {
   const std::size_t levels = plane.levels.size();
   for (std::size_t row = 0; row < plane.cells.size(); row += levels) {
@@ -86,7 +84,7 @@ void print_grid(std::ostream& out, const std::vector<Plane>& planes) {
   }
 }
 
-// Everybody in the cells of any motion and of the headline's error.
+// All contestants, at any motion and at the headline's error.
 void print_everybody(std::ostream& out, const Plane& plane) {
   for (const Cell& cell : plane.cells) {
     if (cell.entries.empty() || (cell.level != any_motion && cell.level != headline_error))
@@ -128,7 +126,6 @@ void print_growth(std::ostream& out, const Growth& growth) {
   print_aligned(out, table);
 }
 
-// How runs that failed did so.
 void print_failures(std::ostream& out, const Runs& runs, bool all) {
   std::map<std::string, int> statuses, of_contestants;
   int failed = 0;
@@ -150,8 +147,8 @@ void print_failures(std::ostream& out, const Runs& runs, bool all) {
   for (const auto& [name, count] : of_contestants) out << "  " << name << " x " << count << '\n';
 }
 
-// Which solvers came from plug-ins, of which version, and what copying states into an engine and
-// out of it took of their time.
+// Plug-in solvers, their versions, and the share of time spent on copying states to and from an
+// engine.
 void print_plugins(std::ostream& out, const Runs& runs, const json& plugins) {
   if (!plugins.empty()) out << '\n';
   for (const auto& plugin : plugins) {
@@ -171,7 +168,6 @@ void print_plugins(std::ostream& out, const Runs& runs, const json& plugins) {
   }
 }
 
-// How far times can be trusted: the A/A pair, the machine.
 void print_noise(std::ostream& out, const json& document) {
   const json& context = document.at("context");
   if (const auto pair = noise_of(context))
