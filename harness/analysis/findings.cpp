@@ -11,8 +11,7 @@ namespace harness::analysis {
 namespace {
 
 constexpr double headline_limit = 0.01;  // strain
-// An exponent whose interval reaches farther to both sides says nothing of growth.
-constexpr double vague_exponent = 1;
+constexpr double vague_exponent = 1;     // an interval that reaches farther says nothing of growth
 
 std::string name_words(const Entry& entry) {
   return entry.row + (entry.role.unranked ? " with untuned settings" : "");
@@ -31,8 +30,8 @@ std::string joined(const std::vector<const Entry*>& entries) {
   return words + (rest > 0 ? " and " + std::to_string(rest) + " more" : "");
 }
 
-// Those that count and are too close to the first to tell apart; the first is the first of them.
-// Where samples are too few for an interval, it is not known, and they are not among them.
+// The first, and counting entries too close to it to rank; those with too few samples for an
+// interval are left out.
 std::vector<const Entry*> equals_in(const Cell& cell) {
   std::vector<const Entry*> list;
   for (const Entry& entry : cell.entries) {
@@ -50,7 +49,6 @@ std::string leader_words(const Cell& cell, const std::vector<const Entry*>& equa
   return first + " is fastest so far, with too few samples to rank";
 }
 
-// What it costs to take another one.
 std::string rival_words(const Cell& cell, const std::vector<const Entry*>& equals) {
   const auto slower = [&](const Entry* entry) {
     return entry && std::ranges::find(equals, entry) == equals.end();
@@ -71,13 +69,12 @@ const Cell* answered(const Plane& plane, double limit, double level) {
   return cell.first() ? &cell : nullptr;
 }
 
-// At the headline's level of error; else the tightest looser one that has an answer, any motion
-// last.
+// At the tightest level, from the headline's on, that has an answer.
 const Cell* headline_of(const Plane& plane, double limit) {
-  const Cell* found = answered(plane, limit, any_motion);
-  for (const double level : plane.levels) {
-    if (level == any_motion || level < headline_error) continue;
-    if (const Cell* cell = answered(plane, limit, level)) found = cell;
+  const Cell* found = nullptr;
+  for (const double level : plane.levels) {  // any motion, then loose to tight
+    const Cell* cell = answered(plane, limit, level);
+    if (cell && level >= headline_error) found = cell;
   }
   return found;
 }
@@ -88,8 +85,8 @@ double limit_next_to(const std::vector<double>& limits, double wanted) {
   });
 }
 
-// What changes with the question: a tighter limit, else another motion, if another method is first
-// then.
+// The answer at the tightest limit below the headline's; else at any motion, if another method is
+// first there.
 const Cell* second_of(const Plane& plane, const Cell& headline) {
   for (auto limit = plane.limits.rbegin(); limit != plane.limits.rend(); ++limit) {
     if (*limit >= headline.strain_limit) break;
@@ -118,13 +115,12 @@ std::string sentence_of(const Cell& cell) {
 }
 
 std::string sentence_of(const Growth& growth) {
-  int sizes = 0;
-  for (const RowGrowth& row : growth.rows) sizes = std::max(sizes, row.exponent.points);
-  std::vector<RowGrowth> whole;  // those that ran at all sizes and whose exponent is known
-  for (const RowGrowth& row : growth.rows) {
-    if (row.exponent.points == sizes && row.exponent.half_width <= vague_exponent)
-      whole.push_back(row);
-  }
+  const auto points = [](const RowGrowth& row) { return row.exponent.points; };
+  const int sizes = points(std::ranges::max(growth.rows, {}, points));
+  std::vector<RowGrowth> whole = growth.rows;  // all sizes, known exponent
+  std::erase_if(whole, [&](const RowGrowth& row) {
+    return row.exponent.points < sizes || !(row.exponent.half_width <= vague_exponent);
+  });
   if (whole.size() < 2) return "";
   const RowGrowth &least = whole.front(), &most = whole.back();
   if (least.exponent.high() >= most.exponent.low()) return "";

@@ -1,5 +1,5 @@
-// The answers of result files in plain words. The terminal, the page of results, figures and the
-// report print these sentences; none makes its own.
+// The answers of result files in words, as the terminal, the page of results, figures and the
+// report print them.
 #pragma once
 
 #include <string>
@@ -10,32 +10,32 @@
 
 namespace harness::analysis {
 
-// Growth of one row of the ranking, at its fastest runs for any motion.
+// One row of the ranking, by its fastest runs at any motion.
 struct RowGrowth {
   std::string row;
-  Slope exponent;           // of the time of a step over the number of vertices
-  Point smallest, largest;  // runs of the least and the most vertices
+  Slope exponent;  // of a step's time over the number of vertices
+  Point smallest, largest;
 };
 
 struct Growth {
   std::string scene;
   double strain_limit = 0;
-  std::vector<RowGrowth> rows;  // with runs at two sizes at least; slowest growth first
+  std::vector<RowGrowth> rows;  // with at least two sizes; slowest growth first
 };
 
-// One for each scene and strain limit that resolution sweeps have.
+// One for each scene and strain limit of resolution sweeps.
 std::vector<Growth> growth_in(const std::vector<Plane>& planes);
 
-// "1.13 (1.05 to 1.21)"; without an interval where two sizes are all.
+// "1.13 (1.05 to 1.21)"; from only two sizes without an interval.
 std::string exponent_words(const Slope& exponent);
 
-// About one plane; of a resolution sweep, about that of the most vertices and the growth up to it.
+// On one plane; for a resolution sweep on the largest one, with the growth up to it.
 struct Finding {
   std::string scene, sweep;
   int vertices = 0;
   std::string subject;  // "drape of 5041 vertices"
-  // The answer at the limit next to 1 % and the headline's error, or the nearest question that has
-  // an answer; then what a tighter limit, or a motion of any kind, changes.
+  // The answer at the limit next to 1 % and the headline's error, or to the nearest question that
+  // has one; then what a tighter limit, or any motion, changes.
   std::vector<std::string> sentences;
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Finding, scene, sweep, vertices, subject, sentences)
@@ -45,20 +45,18 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Finding, scene, sweep, vertices, subject, sen
 // long."
 std::string sentence_of(const Cell& cell);
 // "From 441 to 10201 vertices the time of a step grows least with x, as their number to the power
-// 1.1 (1.0 to 1.2), and most with y, 1.6 (1.5 to 1.7)." Of rows that have all sizes; "" for less
-// than two of them.
+// 1.1 (1.0 to 1.2), and most with y, 1.6 (1.5 to 1.7)." "" for fewer than two rows with all sizes.
 std::string sentence_of(const Growth& growth);
 
 std::vector<Finding> findings_of(const std::vector<Plane>& planes);
 
-// "chain, 80 vertices, over strain". Planes of one title are one table: those of a resolution sweep
-// are its rows.
+// "chain, 80 vertices, over strain". Planes of one title, such as those of a resolution sweep,
+// share a table.
 std::string title_of(const Plane& plane);
-// A sentence on the time until which errors at the headline's level count. Empty: they are not
-// known.
+// A sentence on the time until which errors at the headline's level are known; "" if they all are.
 std::string span_of_errors(const std::vector<Plane>& planes);
 
-// As JSON, schema inextensible-analysis/1: for `bench show --json` and for figures.
+// JSON of schema inextensible-analysis/1, for `bench show --json` and figures.
 nlohmann::json analysis_of(const Runs& runs);
 
 }  // namespace harness::analysis

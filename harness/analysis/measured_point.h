@@ -1,5 +1,4 @@
-// What analysis looks at: the runs of a result file, and its contestants; and numbers as tables and
-// pages say them.
+// What analysis works on: the runs and contestants of a result file; and numbers in words.
 #pragma once
 
 #include <array>
@@ -17,7 +16,7 @@
 
 namespace harness::analysis {
 
-// A point of a result file. Copies share what they hold.
+// A run of a result file. Copies share their data.
 class Point {
  public:
   // noise: of the file's A/A pair, see ratio_of_times.
@@ -42,15 +41,15 @@ class Point {
 
   double seconds() const { return result_->seconds(); }  // not-a-number where nothing was timed
   double noise() const { return noise_; }
-  // The largest strain after the collision filter, which is what a user gets.
+  // The largest strain that a user gets, hence after the collision filter.
   double delivered_strain() const;
-  // The paper's order: the obstacle pushes vertices out after the solve (contact 0).
+  // In the paper's order the obstacle pushes vertices out after the solve (contact 0).
   bool collides_last() const { return scene_parameter("contact") == 0; }
-  // Its distance to the reference at a level (points/measures.h); any_motion: at the headline's.
+  // Distance to the reference at a level (points/measures.h); any_motion: at the headline's.
   ErrorAtLevel error_at(double level) const;
-  // Whether that is known to be within the level; any_motion: always.
+  // Whether that distance is known to be within the level; any_motion: always.
   bool within_error(double level) const { return harness::within_error(measures(), level); }
-  // Whether it is marked as its contestant's fastest within a level.
+  // Whether its sweep marked it as its contestant's fastest within a level.
   bool marked_best(double level) const;
 
  private:
@@ -59,25 +58,22 @@ class Point {
   double noise_;
 };
 
-// Ratio of a's time to b's.
-Ratio ratio(const Point& a, const Point& b);
-// Ratio of the times of a step.
-Ratio ratio_of_steps(const Point& a, const Point& b);
+Ratio ratio(const Point& a, const Point& b);           // of a's time to b's
+Ratio ratio_of_steps(const Point& a, const Point& b);  // of the times of one step
 
-// What a file says of a contestant.
+// A contestant as a file describes it.
 struct Role {
-  std::string name, family;
-  std::string solver;  // that it is, with settings of its own
+  std::string name, family, solver;
   bool competes = true;
   bool unranked = false;  // shown beside its tuned self, not ranked
   bool again = false;     // the second of an A/A pair
   bool ranked() const { return competes && !unranked && !again; }
-  // Whose row its points stand in where any settings may be chosen: an unranked one's in its
-  // solver's, but for the second of an A/A pair, which would give the first a second chance.
+  // The row of its points where any settings may be chosen: an unranked one's is its solver's,
+  // except for the second of an A/A pair, which would give the first a second chance.
   const std::string& row() const { return unranked && !again ? solver : name; }
 };
 
-// One file's legend and noise; contestants that it does not name are their own family.
+// From a file's legend and A/A pair. A contestant that it does not name is its own family.
 class ContestantRoles {
  public:
   ContestantRoles() = default;
@@ -89,7 +85,7 @@ class ContestantRoles {
   std::map<std::string, Role> known_;
 };
 
-// A result file of schema inextensible-bench/1, which views are functions of.
+// A result file of schema inextensible-bench/1.
 struct Runs {
   std::vector<Point> points;  // in the file's order
   ContestantRoles roles;
@@ -116,7 +112,7 @@ auto grouped(const Items& items, Key key) {
 
 // ---- In words ----
 
-// As people call it: of a mesh its file's name, "shirt.obj" of "mesh:clothes/shirt.obj,pins=y>1.2".
+// For a mesh its file's name: "shirt.obj" for "mesh:clothes/shirt.obj,pins=y>1.2".
 std::string scene_words(const std::string& scene);
 std::string percent(double fraction);    // "1.2 %"
 std::string time_words(double seconds);  // "1.23 s", "41.3 ms", "0.51 ms"
