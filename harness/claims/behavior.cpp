@@ -16,7 +16,7 @@ using nlohmann::json;
 
 namespace {
 
-// Sampled steps that took a second iteration; in the others the last is the first.
+// Over sampled steps with a second iteration; in others the first residual is the last one, too.
 struct Residuals {
   int samples = 0;
   double first = 0, last = 0, change = 0;  // means, m
@@ -56,7 +56,7 @@ struct Frames {
   double after = 0;   // largest root mean square distance after it
 };
 
-// None where a run stopped, and without contact.
+// None if a run stopped or had no contact.
 std::optional<Frames> frames_of(const json& entry) {
   if (!entry.value("stopped", "").empty() || !entry.at("first_contact").is_number()) return {};
   const double contact = entry.at("first_contact");
@@ -73,7 +73,7 @@ std::optional<Frames> frames_of(const json& entry) {
   return frames;
 }
 
-// What is said of a method whose best points have all the limits asked for.
+// Judges a method by its best points at all the limits.
 using OfMethod = std::pair<bool, std::string>(const std::vector<Point>&, const char* words);
 
 Verdict by_method(const Points& points, const char* scene, const std::vector<double>& limits,
@@ -96,8 +96,8 @@ Verdict by_method(const Points& points, const char* scene, const std::vector<dou
   return found;
 }
 
-// What a calibrated point says of the tension: EA x strain over the weight that hangs on a strand,
-// which is all of a chain's, and of a square cloth what falls to one of its rows and columns.
+// The tension of a calibrated point, EA x strain, over the weight that hangs on a strand: all of a
+// chain's, and a square cloth's divided by its numbers of rows and columns.
 double tension_over_weight(const Point& p) {
   const double strands = p.scene() == "chain" ? 1 : 2 * std::sqrt(p.vertices());
   return p.stiffness() * p.measures().max_strain * strands /
@@ -255,7 +255,7 @@ Verdict springs_stiffness(const Points& points) {
     places[{p.scene(), p.vertices()}].push_back(tension_over_weight(p));
     found.points.push_back(p.id());
   }
-  // Where most was calibrated at one step: what it says is to be true elsewhere.
+  // The place with the most calibrations at one step must predict the others.
   const auto [known, there] = most_of(places);
   double log_sum = 0;
   for (const double tension : there) log_sum += std::log(tension);

@@ -213,14 +213,6 @@ std::vector<ClaimVerdict> judge_points(const claims::Points& points) {
   return all;
 }
 
-// A verdict that another measurement of the same runs changes is no verdict.
-void mark_flip(ClaimVerdict& claim, const ClaimVerdict& again) {
-  if (claim.verdict == again.verdict) return;
-  claim.measured = claim.verdict + " by the first measurement of each run, " + again.verdict +
-                   " by the last; " + claim.measured;
-  claim.verdict = claims::undecided;
-}
-
 }  // namespace
 
 void check_timed(const json& result) {
@@ -236,7 +228,13 @@ std::vector<ClaimVerdict> judge_claims(const std::vector<json>& results) try {
   if (points.repeated) {
     const std::vector<json> reversed(results.rbegin(), results.rend());
     const std::vector<ClaimVerdict> again = judge_points(claims::Points(reversed));
-    for (std::size_t i = 0; i < all.size(); ++i) mark_flip(all[i], again[i]);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      ClaimVerdict& claim = all[i];
+      if (claim.verdict == again[i].verdict) continue;
+      claim.measured = claim.verdict + " by the first measurement of each run, " +
+                       again[i].verdict + " by the last; " + claim.measured;
+      claim.verdict = claims::undecided;
+    }
   }
   return all;
 } catch (const json::exception& error) {

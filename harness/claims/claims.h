@@ -1,6 +1,4 @@
-// The claims C1 to C16 of Goldenthal et al. 2007, each decided from result files by a stated rule,
-// and what they are judged with: verdicts from numbers with intervals, points of result files, and
-// curves of each contestant's best points.
+// The claims C1 to C16 of Goldenthal et al. 2007, each decided from result files by a stated rule.
 #pragma once
 
 #include <functional>
@@ -27,11 +25,11 @@ constexpr const char* not_measured = "not yet measured";
 
 struct Verdict {
   std::string verdict = not_measured;
-  std::string measured;             // one or two sentences with figures
+  std::string measured;             // one or two sentences
   std::vector<std::string> points;  // ids behind it
 };
 
-// What an interval says of a statement; open: it has values on both sides.
+// Whether a statement holds over an interval; open: on a part of it.
 enum class Answer { yes, no, open };
 
 inline Answer yes_if(bool so) { return so ? Answer::yes : Answer::no; }
@@ -40,23 +38,23 @@ Answer above(const Slope& slope, double threshold);
 Answer all_of(const std::vector<Answer>& answers);  // no if one is no
 
 std::string verdict_of(Answer answer);
-// Verdict on a claim in two parts: one yes and one no is `changed`.
+// On a claim in two parts: one yes and one no is `changed`.
 std::string verdict_of(Answer one, Answer other);
-// Counts of places: not reproduced if not so at most, changed if so at most, undecided if at half.
+// By places: reproduced if all say yes, not reproduced if over half say no, changed if over half
+// say yes and some no.
 std::string verdict_of_counts(int yes, int no, int all);
-// Verdict on a claim judged in several ways; a way that was not measured does not count.
+// On a claim judged in several ways; those not measured do not count.
 std::string verdict_of_all(const std::vector<std::string>& verdicts);
 
 using analysis::text;
 std::string text(double value, int digits = 3);
 std::string text(const Slope& slope);  // "-0.5 ± 0.1", with its 95 % interval
-// `more` at the end of a list, after a separator unless it is the first.
 void append(std::string& list, const std::string& more, const char* separator = ", ");
 
 using Curve = std::map<double, Point>;  // by the value on the axis: a strain limit or vertices
 
-// The points of some result files, which must outlive this. Points that two files have count once,
-// those of runs with a step controller not at all.
+// The points of some result files, which must outlive this. Points in several files count once;
+// runs with a step controller do not count.
 struct Points {
   explicit Points(const std::vector<nlohmann::json>& results);
 
@@ -65,27 +63,26 @@ struct Points {
   ContestantRoles roles;
   std::vector<const nlohmann::json*> matrix, freedom, same_frame;  // of stability sweeps
 
-  // Over the axis of a sweep ("strain" or "resolution"): what one contestant, or "" the fastest of
-  // all, answers within a level of error (analysis/plane.h), with tuned or untuned settings. One
-  // tuned setting serves all places of a scene; where the method's own default is faster, that
-  // counts, so that tuning harms nobody. Of strain sweeps of several sizes the largest counts,
-  // unless one is named.
+  // The best points of a contestant ("": of all) within a level of error, over the axis of a sweep
+  // ("strain" or "resolution"). The faster of tuned and default settings counts, so that tuning a
+  // scene as a whole harms nobody. A strain sweep of several sizes counts at the largest one unless
+  // `vertices` are given.
   Curve best(const std::string& scene, const std::string& sweep, const std::string& contestant,
              double level = any_motion, std::optional<double> vertices = {}) const;
-  // Over error levels: the fastest point of step sweeps of the largest size within each, at any
-  // step and limit, with tuned or untuned settings.
+  // Over error levels: the fastest points of step sweeps of the largest size, at any step and
+  // limit.
   Curve best_at_errors(const std::string& scene, const std::string& contestant) const;
 };
 
 std::optional<Point> at(const Curve& curve, double x);
 std::vector<std::string> ids_of(const std::vector<Curve>& curves);
 
-// A claim looked at in several ways, each with its words, of which the first decides: the project's
-// question, an error of at most 2 %, and beside it the paper's own, any motion, and `more`.
+// A claim judged in several ways, each with its words: the project's question (an error of at most
+// 2 %) decides; beside it are the paper's own (any motion) and `more`.
 using Ways = std::vector<std::pair<std::string, Verdict>>;
 Verdict at_levels(const std::function<Verdict(double level)>& judge, const Ways& more = {});
 
-// ---- One function a claim; without a verdict where measurements are missing ----
+// ---- One function per claim; not_measured where measurements are missing ----
 
 using Judge = Verdict(const Points& points);
 Judge chain_time_over_strain, chain_time_over_resolution, chain_speed, springs_stiffness;
@@ -93,12 +90,12 @@ Judge drape_time_over_strain, drape_time_over_resolution, residual_order, same_f
 Judge failure_configurations, no_drift, matrix_sizes, patch_sag, strain_after_collision;
 Judge degrees_of_freedom_left, shake_small_steps, garment_slip;
 
-// The sag of a yarn under a load that is even along the line between its ends, which are `length`
-// (m) apart: a parabola whose arc is longer than that by `strain`.
+// The sag of a yarn under a load even along the chord between its ends, `length` (m) apart: a
+// parabola whose arc is longer than the chord by `strain`.
 double parabola_sag(double length, double strain);
 
-// How far a garment's rim is below the waist where it began, over the way from there to the hips;
-// of the end that is higher and of the one that is lower.
+// How far the higher and the lower end of a garment's rim have slipped from the waist, over the way
+// from there to the hips.
 struct Slip {
   double least, most;
 };
@@ -117,10 +114,9 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ClaimVerdict, id, statement, verdict, measure
 // Throws UsageError for a result of --untimed, whose times say nothing.
 void check_timed(const nlohmann::json& result);
 
-// results: documents of schema inextensible-bench/1 and inextensible-stability/1; their points are
-// taken together. Where several documents have a point, the first one's counts, and a verdict that
-// the last one's would change is undecided. Throws UsageError for documents that lack what a claim
-// looks at.
+// results: documents of schemas inextensible-bench/1 and inextensible-stability/1. Where several
+// have a point, the first one's counts; a verdict that the last one's would change is undecided.
+// Throws UsageError for incomplete documents.
 std::vector<ClaimVerdict> judge_claims(const std::vector<nlohmann::json>& results);
 
 void print_claims(std::ostream& out, const std::vector<ClaimVerdict>& claims);

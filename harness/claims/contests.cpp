@@ -61,7 +61,6 @@ Slope slope_of(const std::vector<std::pair<double, Ratio>>& ratios) {
   return slope;
 }
 
-// How the ratio of times changes along the axis, and the ratio at both ends.
 Verdict growth(const Curve& springs, const Curve& fast,
                Answer (*fast_is_better)(const Slope&, double), std::string (*place)(double)) {
   const auto ratios = ratios_of(springs, fast);
@@ -92,7 +91,7 @@ std::string effort(const Point& p) {
          text(1e6 * p.seconds() * p.duration() / iterations, 3) + " us";
 }
 
-// "3 of 6 (1 the other way, 2 undecided)": in how many places an answer was given.
+// "3 of 6 (1 the other way, 2 undecided)".
 std::string tally(const std::vector<Answer>& answers) {
   const auto count = [&](Answer one) { return std::to_string(std::ranges::count(answers, one)); };
   return count(Answer::yes) + " of " + std::to_string(answers.size()) +
@@ -116,8 +115,8 @@ std::string ahead_from(const Curve& fast, const std::vector<Curve>& others) {
   return from;
 }
 
-// The fastest of all contestants, at each place of fast projection's curve: "; fastest of all, ours
-// and rivals too: yarn_projection at 10 %, 1 %; icd at 0.1 %".
+// "; fastest of all, ours and rivals too: yarn_projection at 10 %, 1 %; icd at 0.1 %", at the
+// places of fast projection's curve.
 std::string first_of_all(const Points& points, const std::string& sweep, const Curve& fast,
                          double level, std::string (*words)(double),
                          std::optional<double> vertices = {}) {
@@ -132,8 +131,8 @@ std::string first_of_all(const Points& points, const std::string& sweep, const C
   return "; fastest of all, ours and rivals too: " + all;
 }
 
-// C5 at one size; not measured: there is too little to judge it by. Strain limiting in a random
-// order is stopped where it is far behind, so that it may have no slope at a large size.
+// C5 at one size. Strain limiting in a random order is stopped where it is far behind, so that it
+// may have no slope at a large size.
 Verdict drape_over_strain(const Points& points, double level, double vertices) {
   const auto curve_of = [&](const PaperMethod& method) {
     return points.best("drape", "strain", method.name, level, vertices);
@@ -168,7 +167,7 @@ Verdict drape_over_strain(const Points& points, double level, double vertices) {
           ids_of(evidence)};
 }
 
-// The steps that cannot be told from the best one by their time.
+// The steps whose times are too close to the best one's to rank.
 struct Steps {
   double best, smallest, largest;  // s
 
