@@ -21,7 +21,7 @@ namespace {
 
 using nlohmann::json;
 
-// The least number of runs of each that can be significant at all.
+// The least number of runs of each that can be significant.
 std::size_t least_samples(double significance) {
   std::size_t n = 1;
   while (least_possible_p(n, n) >= significance) ++n;
@@ -88,8 +88,8 @@ void note_failures(const ComparedPoint& base, const ComparedPoint& next, const G
   }
 }
 
-// Where the step was searched, which steps were tried depends on times: a step that only one result
-// tried, or gave up because a better one was known, says nothing.
+// Which steps a search tried depends on times: one that only one result tried, or gave up because a
+// better one was known, is no evidence.
 class Tried {
  public:
   explicit Tried(const ComparedResult& result) {
@@ -112,9 +112,8 @@ class Tried {
 constexpr double same_speed = 0.05;     // of two machines: |log(ratio)| of the fixed kernel's times
 constexpr double unknown_spread = 0.5;  // of a noisy file that does not say
 
-// Two sweeps, one after the other, tell builds apart only by more than the machine's own speed
-// varied: within each of them, and from one to the other. The kernel that sweeps run in between
-// tells; without it the ratio is not a number.
+// How much the machine's own speed varied, within each sweep and between them, by the times of the
+// fixed kernel that sweeps run in between; without it the ratio is not a number.
 double drift_between(const json& base, const json& next) {
   double drift = 0, log_seconds[2] = {std::nan(""), std::nan("")};
   for (const int i : {0, 1}) {
@@ -143,8 +142,8 @@ std::vector<std::string> notes_of(const ComparedResult& base, const ComparedResu
   return notes;
 }
 
-// Two points of one key (two sweeps of one scene in a suite) pair up in their order; null: a point
-// is in one result only.
+// Points of one key (two sweeps of one scene in a suite) pair up in their order; null: a point is
+// in one result only.
 std::vector<std::pair<const ComparedPoint*, const ComparedPoint*>> paired(
     const ComparedResult& base, const ComparedResult& next) {
   std::vector<std::pair<const ComparedPoint*, const ComparedPoint*>> pairs;

@@ -1,5 +1,5 @@
-// Two results point by point: what has become slower, what fails now. The rule for times is that of
-// rustc-perf and asv put together: a rank test and two ratios, all of which must agree.
+// Two results point by point: what has become slower, what fails now. Times must differ by a rank
+// test and two ratios, as in rustc-perf and asv.
 #pragma once
 
 #include <algorithm>
@@ -17,21 +17,20 @@ namespace harness {
 // ---- What a comparison lets pass: configs/gate.json, schema configs/gate.schema.json ----
 
 enum class CounterRule {
-  exact,   // any difference fails, fewer iterations too: the base is then to be renewed
+  exact,   // any difference fails, even less work: the base must then be renewed
   rise,    // only more work fails
-  inform,  // differences are counted and told, and nothing fails
+  inform,  // differences are reported, and nothing fails
 };
 
 struct Gate {
-  bool times = true;  // whether times count at all
-  // A time has changed if all three say so.
+  bool times = true;  // whether times count
+  // A time has changed if all three agree.
   double significance = 0.05;  // one-sided Mann-Whitney p below this
   double median_ratio = 1.05;
   double minimum_ratio = 1.03;
   CounterRule counter_rule = CounterRule::exact;
   std::vector<std::string> counters;  // names of `work` in a result file; all of them if empty
-  // Largest permitted ratio of new to base of "max_strain", "trajectory" and "energy_drift"; what
-  // is not there does not count.
+  // Largest permitted ratios of new to base; errors that are not listed do not count.
   std::map<std::string, double> errors{
       {"max_strain", 1.001}, {"trajectory", 1.01}, {"energy_drift", 1.01}};
   double error_floor = 1e-9;  // an error below this is rounding
@@ -41,7 +40,7 @@ struct Gate {
 Gate read_gate(const std::string& path);
 Gate parse_gate(const std::string& text, const std::string& path);
 
-// ---- Results, as far as they can be compared ----
+// ---- What is compared of a result ----
 
 struct ComparedPoint {
   std::string sweep = {}, id = {}, status = {}, detail = {};
@@ -67,26 +66,25 @@ struct ComparedResult {
   std::vector<ComparedPoint> points;
 };
 
-// Result files of sweeps, or a baseline. Several files are one result: their contexts must agree in
-// build and machine. Throws UsageError, naming the file, for anything else.
+// Result files of sweeps, or a baseline. Several files of one build and machine are one result.
+// Throws UsageError, naming the file, for anything else.
 ComparedResult read_compared(const std::vector<std::string>& paths);
 ComparedPoint compared_point(const nlohmann::json& point);  // of a result file or a baseline
 
-// The baseline of result files: a result without times, one point a line, for a repository (schema
-// inextensible-baseline/1, configs/baseline.schema.json).
+// A result without times, for a repository (schema inextensible-baseline/1).
 nlohmann::ordered_json baseline_document(const ComparedResult& result);
 
 // ---- The comparison ----
 
 std::string per_cent(double ratio);  // how far from 1: "+5 %", "-3.1 %"
 
-// From what matters most, in the order of tables.
+// In the order of tables.
 enum class Change {
   newly_failing,  // ran in the base
   missing,        // of the base's points
   slower,         // in time, or more work; a regression
   changed,        // less work under the rule "exact", or a larger error; a regression
-  ambiguous,      // cannot be decided; no regression
+  ambiguous,      // cannot be decided
   fixed,
   faster,
   added,
@@ -103,9 +101,9 @@ constexpr bool is_regression(Change change) {
 struct PointChange {
   Change change = Change::same;
   std::string sweep, id;
-  std::vector<std::string> reasons = {};  // one line each, for people
-  bool too_few = false;                   // nothing to say but that times had too few runs
-  bool undecided = false;  // too few runs, or too unquiet a machine, for a best point
+  std::vector<std::string> reasons = {};  // one line each
+  bool too_few = false;                   // too few runs is the only reason
+  bool undecided = false;                 // a best point with too few runs or too noisy a machine
 
   std::string text() const;  // the reasons in one line
 };
@@ -116,24 +114,21 @@ struct TimeChange {
   bool too_few = false;          // ambiguous: too few samples
 };
 
-// Samples of the same unit. Faster and slower are judged alike, from the faster side.
-// noise: |log(ratio of times)| up to which a difference is none.
+// Faster and slower are judged alike, from the faster side. noise: |log(ratio of times)| up to
+// which a difference does not count.
 TimeChange compare_times(const std::vector<double>& base, const std::vector<double>& next,
                          const Gate& gate, double noise = 0);
 
-// What of two results can be compared at all.
 struct Comparability {
   std::string no_counters, no_times;  // why not; "" if they can
-  double noise = 0;                   // of A/A pairs: |log(ratio)|s of times below it are none
-  // What the machine's own speed varied by, |log(ratio)|, beyond that: smaller ones are undecided.
-  double drift = 0;
+  double noise = 0;                   // of A/A pairs: smaller |log(ratio)|s of times do not count
+  double drift = 0;  // of the machine's own speed, beyond that: smaller ones are undecided
   bool counters() const { return no_counters.empty(); }
   bool times() const { return no_times.empty(); }
 };
 Comparability comparability(const ComparedResult& base, const ComparedResult& next,
                             const Gate& gate);
 
-// One point in both. Times are left out unless `can.times()`, counters unless `can.counters()`.
 PointChange compare_point(const ComparedPoint& base, const ComparedPoint& next, const Gate& gate,
                           const Comparability& can);
 
@@ -150,7 +145,7 @@ struct Comparison {
   bool undecided() const { return std::ranges::any_of(points, &PointChange::undecided); }
 };
 
-// Build, machine or scenes differ so much that no comparison would mean anything.
+// Build, machine or scenes differ so much that a comparison would be meaningless.
 class NotComparable : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -158,21 +153,20 @@ class NotComparable : public std::runtime_error {
 
 Comparison compare(const ComparedResult& base, const ComparedResult& next, const Gate& gate);
 
-// ---- Two programs timed against each other: single points in processes of their own, in
-// interleaved pairs, so that what the machine does meanwhile falls on both ----
+// ---- Two programs timed in interleaved pairs of processes, one point each, so that disturbances
+// affect both ----
 
 enum class Side { old_one, new_one };
 
-// One point to be timed.
 struct PairedPoint {
   nlohmann::json spec;                    // what `bench point` reads, with the point's id
   int samples = 1;                        // runs in one process
-  ComparedPoint before = {}, after = {};  // what the processes said; samples: one time a process
+  ComparedPoint before = {}, after = {};  // samples: one time per process
 
   ComparedPoint& said(Side side) { return side == Side::old_one ? before : after; }
 };
 
-// Runs one process on one point; what `bench point` printed, all runs among its samples.
+// What `bench point` printed of one point, with the samples of all its runs.
 using RunOne = std::function<ComparedPoint(Side, const PairedPoint&)>;
 
 // `pairs` rounds over all points; the sides take turns in coming first (ABBA). A point that has
@@ -184,12 +178,11 @@ Comparison compare_in_pairs(std::vector<PairedPoint> points, int pairs, int conf
 
 // ---- Reports ----
 
-// A table of the points that are not SAME, the notes, and how many there are of each kind of
-// change.
+// A table of the points that are not SAME, notes, and the number of changes of each kind.
 void print_comparison(std::ostream& out, const Comparison& comparison);
-// JUnit XML: one test case a point; regressions and failures are its failures. name: the suite's.
+// One test case per point; regressions and failures fail. name: the suite's.
 std::string junit_xml(const Comparison& comparison, const std::string& name);
-// The same table for a pull request or a job summary. title: its heading.
+// For a pull request or a job summary.
 std::string markdown_table(const Comparison& comparison, const std::string& title);
 
 }  // namespace harness

@@ -1,4 +1,4 @@
-// What is compared, read from files: gates, results and baselines; and a baseline written.
+// Reads gates, results and baselines; writes baselines.
 #include "harness/base/files.h"
 
 #include <algorithm>
@@ -36,7 +36,6 @@ json read_any(const std::string& path) {
   return document;
 }
 
-// Whether the steps of this point's search were chosen by their times.
 bool searched(const json& suite, const ComparedPoint& point) {
   if (point.sweep == "step") return false;
   const std::string scene = point.id.substr(0, point.id.find('/'));

@@ -11,7 +11,7 @@ namespace {
 
 bool fails(Change change) { return is_failure(change) || is_regression(change); }
 
-// SAME with a reason: a difference that the gate only wants told.
+// SAME with a reason: a difference that the gate only reports.
 bool worth_a_row(const PointChange& point) {
   return !point.too_few && (point.change != Change::same || !point.reasons.empty());
 }
@@ -32,7 +32,7 @@ std::string counts(const Comparison& comparison) {
   return std::to_string(comparison.points.size()) + " points: " + text;
 }
 
-// One line for all points that differ in time and have too few runs to say whether they really do.
+// Points with too few runs to decide on their times share one note.
 std::vector<std::string> all_notes(const Comparison& comparison) {
   std::vector<std::string> notes = comparison.notes;
   const auto& points = comparison.points;
@@ -64,7 +64,7 @@ std::string xml(const std::string& text) {
       text, {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\n', "&#10;"}}, '?');
 }
 
-// Inside a cell: no line may end, no cell may end, and nothing is a tag.
+// Inside a cell neither the line nor the cell may end, and nothing is a tag.
 std::string cell(const std::string& text) {
   return escaped(text,
                  {{'|', "\\|"},
