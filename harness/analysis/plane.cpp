@@ -39,15 +39,19 @@ std::string why_empty(const std::vector<Point>& here, double level, double known
              : "the file has no errors";
 }
 
-// An unranked contestant shares its solver's row, in which only the fastest counts.
+// Keeps each contestant's fastest entry. An unranked contestant shares its solver's row, in which
+// only the fastest counts.
 void rank(std::vector<Entry>& entries) {
   std::ranges::stable_sort(entries, {}, [](const Entry& e) { return e.point.seconds(); });
-  std::vector<std::string> rows;
+  std::vector<Entry> ranked;
   for (Entry& entry : entries) {
-    if (entry.role.again || !entry.role.competes) continue;
-    entry.counts = std::ranges::count(rows, entry.row) == 0;
-    rows.push_back(entry.row);
+    const auto any = [&](auto is) { return std::ranges::any_of(ranked, is); };
+    if (any([&](const Entry& e) { return e.role.name == entry.role.name; })) continue;
+    entry.counts = entry.role.competes && !entry.role.again &&
+                   !any([&](const Entry& e) { return e.counts && e.row == entry.row; });
+    ranked.push_back(std::move(entry));
   }
+  entries = std::move(ranked);
 }
 
 Cell cell_of(const std::vector<Point>& here, double limit, double level,
@@ -74,16 +78,7 @@ void take_tighter_runs(std::vector<Cell>& cells, std::size_t levels) {
   for (std::size_t i = cells.size(); i-- > levels;) {
     const Cell& tight = cells[i];
     Cell& loose = cells[i - levels];
-    for (const Entry& entry : tight.entries) {
-      const auto own = std::ranges::find_if(loose.entries, [&](const Entry& other) {
-        return other.point.contestant() == entry.point.contestant();
-      });
-      if (own == loose.entries.end()) {
-        loose.entries.push_back(entry);
-      } else if (entry.point.seconds() < own->point.seconds()) {
-        *own = entry;
-      }
-    }
+    loose.entries.insert(loose.entries.end(), tight.entries.begin(), tight.entries.end());
     rank(loose.entries);
     if (loose.first()) loose.empty_because.clear();
   }
