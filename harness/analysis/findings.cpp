@@ -79,12 +79,6 @@ const Cell* headline_of(const Plane& plane, double limit) {
   return found;
 }
 
-double limit_next_to(const std::vector<double>& limits, double wanted) {
-  return *std::ranges::min_element(limits, [&](double a, double b) {
-    return std::abs(std::log(a / wanted)) < std::abs(std::log(b / wanted));
-  });
-}
-
 // The answer at the tightest limit below the headline's; else at any motion, if another method is
 // first there.
 const Cell* second_of(const Plane& plane, const Cell& headline) {
@@ -146,7 +140,8 @@ std::vector<Finding> findings_of(const std::vector<Plane>& planes) {
         plane.vertices,
         scene_words(plane.scene) + " of " + std::to_string(plane.vertices) + " vertices",
         {}};
-    const double limit = limit_next_to(plane.limits, headline_limit);
+    const double limit = std::ranges::min(
+        plane.limits, {}, [](double x) { return std::abs(std::log(x / headline_limit)); });
     const Cell* headline = headline_of(plane, limit);
     finding.sentences.push_back(sentence_of(headline ? *headline : plane.cell(limit, any_motion)));
     if (const Cell* second = headline ? second_of(plane, *headline) : nullptr)

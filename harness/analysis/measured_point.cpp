@@ -36,45 +36,30 @@ ErrorAtLevel Point::error_at(double level) const {
   return harness::error_at(measures(), level == any_motion ? headline_error : level);
 }
 
-bool Point::marked_best(double level) const {
-  const auto& levels = result_->best_at_errors;
-  return level == any_motion ? result_->best : std::ranges::count(levels, level) > 0;
-}
-
 Ratio ratio(const Point& a, const Point& b) {
   return ratio_of_times(a.result().samples, b.result().samples, std::fmax(a.noise(), b.noise()));
-}
-
-Ratio ratio_of_steps(const Point& a, const Point& b) {
-  const Ratio times = ratio(a, b);
-  const double steps = a.spec().step / b.spec().step;
-  return {times.value * steps, times.low * steps, times.high * steps};
 }
 
 ContestantRoles::ContestantRoles(const json& document) {
   const json legend = document.value("legend", json::object());
   for (const json& entry : legend.value("solvers", json::array())) {
     const std::string name = entry.at("name");
-    known_.try_emplace(name, Role{.name = name,
-                                  .family = entry.value("family", name),
-                                  .solver = entry.value("solver", name),
-                                  .competes = entry.value("contestant", true),
-                                  .unranked = entry.value("unranked", false)});
+    known.try_emplace(name, Role{.name = name,
+                                 .family = entry.value("family", name),
+                                 .solver = entry.value("solver", name),
+                                 .competes = entry.value("contestant", true),
+                                 .unranked = entry.value("unranked", false)});
   }
   const json pair = document.value(json::json_pointer("/context/noise/pair"), json());
   if (pair.is_array()) {
     const std::string second = pair.at(1);
-    known_.try_emplace(second, Role{second, second, second}).first->second.again = true;
+    known.try_emplace(second, Role{second, second, second}).first->second.again = true;
   }
 }
 
 Role ContestantRoles::of(const std::string& contestant) const {
-  const auto place = known_.find(contestant);
-  return place != known_.end() ? place->second : Role{contestant, contestant, contestant};
-}
-
-void ContestantRoles::add(const ContestantRoles& other) {
-  known_.insert(other.known_.begin(), other.known_.end());
+  const auto place = known.find(contestant);
+  return place != known.end() ? place->second : Role{contestant, contestant, contestant};
 }
 
 Runs::Runs(const json& document) : roles(document), levels{any_motion} {

@@ -49,8 +49,6 @@ class Point {
   ErrorAtLevel error_at(double level) const;
   // Whether that distance is known to be within the level; any_motion: always.
   bool within_error(double level) const { return harness::within_error(measures(), level); }
-  // Whether its sweep marked it as its contestant's fastest within a level.
-  bool marked_best(double level) const;
 
  private:
   std::shared_ptr<const PointResult> result_;
@@ -58,8 +56,7 @@ class Point {
   double noise_;
 };
 
-Ratio ratio(const Point& a, const Point& b);           // of a's time to b's
-Ratio ratio_of_steps(const Point& a, const Point& b);  // of the times of one step
+Ratio ratio(const Point& a, const Point& b);  // of a's time to b's
 
 // A contestant as a file describes it.
 struct Role {
@@ -74,15 +71,12 @@ struct Role {
 };
 
 // From a file's legend and A/A pair. A contestant that it does not name is its own family.
-class ContestantRoles {
- public:
+struct ContestantRoles {
+  std::map<std::string, Role> known;
+
   ContestantRoles() = default;
   explicit ContestantRoles(const nlohmann::json& document);
   Role of(const std::string& contestant) const;
-  void add(const ContestantRoles& other);  // what is known already stays
-
- private:
-  std::map<std::string, Role> known_;
 };
 
 // A result file of schema inextensible-bench/1.

@@ -115,12 +115,6 @@ std::tuple<int, double, double> worth(const std::optional<Reach>& r) {
   return r->right ? std::tuple(0, r->strain_limit, error) : std::tuple(1, error, -r->strain_limit);
 }
 
-std::vector<std::tuple<int, double, double>> rank_of(const Budgeted& row) {
-  std::vector<std::tuple<int, double, double>> rank;
-  for (const auto& reach : row.reached) rank.insert(rank.begin(), worth(reach));
-  return rank;
-}
-
 BudgetTable table_of(std::vector<Point> points, const ContestantRoles& roles,
                      const std::vector<double>& budgets) {
   const PointSpec& one = points.front().spec();
@@ -143,7 +137,11 @@ BudgetTable table_of(std::vector<Point> points, const ContestantRoles& roles,
     }
     table.rows.push_back(std::move(line));
   }
-  std::ranges::stable_sort(table.rows, {}, rank_of);
+  std::ranges::stable_sort(table.rows, {}, [](const Budgeted& row) {
+    std::vector<std::tuple<int, double, double>> worths;
+    for (const auto& reach : row.reached) worths.insert(worths.begin(), worth(reach));
+    return worths;
+  });
   return table;
 }
 
@@ -153,7 +151,10 @@ std::optional<Point> fastest_of(const std::vector<Point>& points, double level) 
   std::optional<Point> best;
   for (const bool marked : {true, false}) {
     for (const Point& p : points) {
-      if (!may_answer(p) || (marked && !p.marked_best(level))) continue;
+      const PointResult& r = p.result();
+      const bool is_marked =
+          level == any_motion ? r.best : std::ranges::count(r.best_at_errors, level) > 0;
+      if (!may_answer(p) || (marked && !is_marked)) continue;
       if (best && p.seconds() >= best->seconds()) continue;
       if (p.within_error(level)) best = p;
     }

@@ -77,7 +77,7 @@ Points::Points(const std::vector<json>& results) {
   using Key = std::tuple<std::string, std::string, std::string, bool>;
   std::set<Key> seen;
   for (const json& result : results) {
-    roles.add(ContestantRoles(result));
+    roles.known.merge(ContestantRoles(result).known);  // what is known already stays
     if (result.value("schema", "") == "inextensible-stability/1") {
       for (const json& cell : result.at("matrix")) matrix.push_back(&cell);
       for (const json& mesh : result.at("degrees_of_freedom")) freedom.push_back(&mesh);
@@ -195,17 +195,11 @@ const std::map<std::string, claims::Judge*> judges{{"C1", claims::chain_time_ove
                                                    {"C15", claims::shake_small_steps},
                                                    {"C16", claims::garment_slip}};
 
-const json& claim_texts() {
-  static const json texts = [] {
-    const std::string path = source_path("configs/claims.json");
-    return parse_document(read_file(path, "file of claims"), path);
-  }();
-  return texts;
-}
-
 std::vector<ClaimVerdict> judge_points(const claims::Points& points) {
+  const std::string path = source_path("configs/claims.json");
+  static const json texts = parse_document(read_file(path, "file of claims"), path);
   std::vector<ClaimVerdict> all;
-  for (const json& claim : claim_texts()) {
+  for (const json& claim : texts) {
     all.push_back({judges.at(claim.at("id"))(points), claim.at("id"), claim.at("where"),
                    claim.at("statement"), claim.at("rule")});
     if (all.back().verdict == claims::not_measured) all.back().points.clear();

@@ -323,7 +323,9 @@ Verdict shake_small_steps(const Points& points) {
             std::isnan(other->measures().energy_gain))
           continue;
         const Steps steps = steps_of(points, p, level), larger = steps_of(points, *other, level);
-        const Ratio costlier = ratio_of_steps(*other, p);
+        const Ratio times = ratio(*other, p);
+        const double by = other->step() / p.step();
+        const Ratio costlier{times.value * by, times.low * by, times.high * by};
         answers.push_back(all_of({smaller(steps, larger), above(costlier, 1)}));
         details += "; " + vertices_of(p.vertices()) + " at " + percent(p.strain_limit()) +
                    ": SHAKE " + steps.words() + ", ICD " + larger.words() + ", whose step takes " +

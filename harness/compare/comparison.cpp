@@ -21,13 +21,6 @@ namespace {
 
 using nlohmann::json;
 
-// The least number of runs of each that can be significant.
-std::size_t least_samples(double significance) {
-  std::size_t n = 1;
-  while (least_possible_p(n, n) >= significance) ++n;
-  return n;
-}
-
 void note_counters(const ComparedPoint& base, const ComparedPoint& next, const Gate& gate,
                    PointChange& result) {
   bool rose = false, fell = false;
@@ -194,10 +187,11 @@ TimeChange compare_times(const std::vector<double>& base, const std::vector<doub
                                    " differs by as much as counts"};
   }
   if (median && minimum && least_possible_p(base.size(), next.size()) >= gate.significance) {
-    const std::string enough = std::to_string(least_samples(gate.significance));
+    std::size_t enough = 1;
+    while (least_possible_p(enough, enough) >= gate.significance) ++enough;
     return {Change::ambiguous,
             measured + ": " + std::to_string(base.size()) + " and " + std::to_string(next.size()) +
-                " runs are too few to decide, it takes " + enough + " each",
+                " runs are too few to decide, it takes " + std::to_string(enough) + " each",
             true};
   }
   return {};

@@ -11,14 +11,12 @@ namespace {
 
 bool fails(Change change) { return is_failure(change) || is_regression(change); }
 
-// SAME with a reason: a difference that the gate only reports.
-bool worth_a_row(const PointChange& point) {
-  return !point.too_few && (point.change != Change::same || !point.reasons.empty());
-}
-
 std::vector<PointChange> rows_of(const Comparison& comparison) {
-  std::vector<PointChange> rows;
-  std::ranges::copy_if(comparison.points, std::back_inserter(rows), worth_a_row);
+  std::vector<PointChange> rows = comparison.points;
+  std::erase_if(rows,
+                [](const PointChange& point) {  // SAME with a reason: the gate only reports it
+                  return point.too_few || (point.change == Change::same && point.reasons.empty());
+                });
   std::ranges::stable_sort(rows, {}, &PointChange::change);
   return rows;
 }
