@@ -10,6 +10,11 @@
 namespace harness {
 namespace {
 
+std::vector<json> operator+(std::vector<json> a, const std::vector<json>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
 TEST(Claims, C7FitsTheOrdersOfResidualsThatTookTwoIterations) {
   const auto with = [](double order, double change_order, bool second, double corrupt) {
     std::vector<json> points;
@@ -153,13 +158,16 @@ TEST(Claims, C15AsksForSmallerAndCheaperStepsOfRunsThatHoldTheirEnergy) {
   EXPECT_EQ(verdict("C15", {unjudged, icd}).verdict, "not yet measured");
 }
 
+// On the chain at 1 % strain.
+std::vector<json> springs_and_fast_projection(double ratio, int vertices = 80) {
+  return {point("chain", "strain", "implicit_springs", 0.01, vertices, 0.01, ratio),
+          point("chain", "strain", "fast_projection", 0.01, vertices, 0.01, 1)};
+}
+
 TEST(Claims, OfTwoDocumentsTheFirstCountsAndAVerdictThatFlipsIsUndecided) {
-  const auto pair = [](double ratio) {
-    return document({point("chain", "strain", "implicit_springs", 0.01, 80, 0.01, ratio),
-                     point("chain", "strain", "fast_projection", 0.01, 80, 0.01, 1)});
-  };
-  const auto c3 = [&](double first, double last) {
-    return judge_claims({pair(first), pair(last)})[2];
+  const auto c3 = [](double first, double last) {
+    return judge_claims({document(springs_and_fast_projection(first)),
+                         document(springs_and_fast_projection(last))})[2];
   };
   EXPECT_EQ(c3(25, 30).verdict, "reproduced");
   EXPECT_TRUE(says(c3(25, 30), "ratio 25"));
@@ -168,10 +176,7 @@ TEST(Claims, OfTwoDocumentsTheFirstCountsAndAVerdictThatFlipsIsUndecided) {
 }
 
 TEST(Claims, OfTwoSizesTheLargerCountsAndAdaptiveStepsDoNot) {
-  std::vector<json> points{point("chain", "strain", "implicit_springs", 0.01, 80, 0.01, 25),
-                           point("chain", "strain", "fast_projection", 0.01, 80, 0.01, 1),
-                           point("chain", "strain", "implicit_springs", 0.01, 20, 0.01, 1),
-                           point("chain", "strain", "fast_projection", 0.01, 20, 0.01, 1)};
+  std::vector<json> points = springs_and_fast_projection(25) + springs_and_fast_projection(1, 20);
   EXPECT_EQ(verdict("C3", points).verdict, "reproduced");
   json adaptive = point("chain", "strain", "fast_projection", 0.01, 80, 0.02, 25);
   adaptive["adaptive"] = true;
@@ -208,11 +213,6 @@ std::vector<json> sagging(const char* scene, const std::string& solver, const js
     limit /= 10;
   }
   return points;
-}
-
-std::vector<json> operator+(std::vector<json> a, const std::vector<json>& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
 }
 
 TEST(Claims, C12HoldsTheLowerEdgesSagAgainstOnePercentOfTheSide) {
