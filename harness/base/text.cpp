@@ -29,6 +29,10 @@ std::string told_apart(double value, double other) {
   return number_text(value, digits);
 }
 
+void append(std::string& list, const std::string& more, const char* separator) {
+  list += (list.empty() ? "" : separator) + more;
+}
+
 std::string shortened(const std::string& text, std::size_t most) {
   std::string line = text.substr(0, most);
   std::ranges::replace_if(

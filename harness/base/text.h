@@ -15,6 +15,9 @@ double rounded_to(double value, int digits = 6);
 // against a limit of 0.0001.
 std::string told_apart(double value, double other);
 
+// `more` at the end of a list, after a separator unless it is the first.
+void append(std::string& list, const std::string& more, const char* separator = ", ");
+
 // A text shortened for a message: its beginning if it is long, and always one line.
 std::string shortened(const std::string& text, std::size_t most = 120);
 

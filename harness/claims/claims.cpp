@@ -68,10 +68,6 @@ std::string text(const Slope& slope) {
          (std::isfinite(slope.half_width) ? " ± " + text(slope.half_width, 1) : "");
 }
 
-void append(std::string& list, const std::string& more, const char* separator) {
-  list += (list.empty() ? "" : separator) + more;
-}
-
 Points::Points(const std::vector<json>& results) {
   // Ids do not name the order of passes.
   using Key = std::tuple<std::string, std::string, std::string, bool>;

@@ -49,7 +49,6 @@ std::string verdict_of_all(const std::vector<std::string>& verdicts);
 using analysis::text;
 std::string text(double value, int digits = 3);
 std::string text(const Slope& slope);  // "-0.5 ± 0.1", with its 95 % interval
-void append(std::string& list, const std::string& more, const char* separator = ", ");
 
 using Curve = std::map<double, Point>;  // by the value on the axis: a strain limit or vertices
 

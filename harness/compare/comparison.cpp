@@ -161,7 +161,7 @@ std::vector<std::pair<const ComparedPoint*, const ComparedPoint*>> paired(
 
 std::string PointChange::text() const {
   std::string text;
-  for (const std::string& reason : reasons) text += (text.empty() ? "" : "; ") + reason;
+  for (const std::string& reason : reasons) append(text, reason, "; ");
   return text;
 }
 

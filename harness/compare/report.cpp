@@ -4,6 +4,7 @@
 #include <unordered_map>
 
 #include "harness/base/table.h"
+#include "harness/base/text.h"
 #include "harness/compare/comparison.h"
 
 namespace harness {
@@ -25,7 +26,7 @@ std::string counts(const Comparison& comparison) {
   std::string text;
   for (std::size_t i = 0; i < change_names.size(); ++i) {
     if (const std::size_t n = comparison.count(static_cast<Change>(i)); n > 0)
-      text += (text.empty() ? "" : ", ") + std::to_string(n) + " " + change_names[i];
+      append(text, std::to_string(n) + " " + change_names[i]);
   }
   return std::to_string(comparison.points.size()) + " points: " + text;
 }

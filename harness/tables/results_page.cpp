@@ -116,8 +116,8 @@ void print_slack(std::ostream& out, const ContestantRoles& roles, const Plane& p
       }
     }
     if (!(error > 0) || !std::isfinite(kept)) continue;
-    text += (text.empty() ? "" : ", ") + quoted(name) + " " + number_text(100 * error, 2) + " % (" +
-            number_text(100 * std::max(0.0, 1 - kept / error), 2) + " %)";
+    append(text, quoted(name) + " " + number_text(100 * error, 2) + " % (" +
+                     number_text(100 * std::max(0.0, 1 - kept / error), 2) + " %)");
   }
   if (!text.empty())
     out << "The least error at " << percent(loose)
@@ -190,9 +190,8 @@ struct SceneTable {
 std::string about_sag(const Point& one, const std::vector<double>& limits) {
   std::string parabolas;
   for (const double limit : limits)
-    parabolas += (parabolas.empty() ? "" : ", ") +
-                 plain(1e3 * claims::parabola_sag(one.scene_parameter("side"), limit), 3) +
-                 " mm at " + percent(limit);
+    append(parabolas, plain(1e3 * claims::parabola_sag(one.scene_parameter("side"), limit), 3) +
+                          " mm at " + percent(limit));
   return "How far the middle of the top row, and that of the lower edge, hang below where they "
          "would if nothing stretched, mean over the last third of the run, each solver at its best "
          "step; in brackets how fast it still moves. A top row that uses up its strain and bears "
@@ -424,7 +423,7 @@ void print_budgets(std::ostream& out, const std::vector<BudgetTable>& places) {
     std::string none;
     for (const Budgeted& row : place.rows) {
       if (std::ranges::none_of(row.reached, [](const auto& reach) { return reach.has_value(); })) {
-        none += (none.empty() ? "" : ", ") + quoted(row.row);
+        append(none, quoted(row.row));
         continue;
       }
       table.rows.push_back({row.row});

@@ -138,8 +138,7 @@ void print_failures(std::ostream& out, const Runs& runs, bool all) {
   }
   if (failed == 0) return;
   std::string counts;
-  for (const auto& [status, count] : statuses)
-    counts += (counts.empty() ? "" : ", ") + status + " " + std::to_string(count);
+  for (const auto& [status, count] : statuses) append(counts, status + " " + std::to_string(count));
   out << '\n'
       << failed << " of " << runs.points.size()
       << " trial runs failed (coarse steps are tried until they do): " << counts << '\n';
