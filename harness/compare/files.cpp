@@ -51,12 +51,12 @@ std::string shell_line(const json& words) {
   std::string line;
   for (const std::string text : words) {
     const bool plain = text.find_first_of(" |()$*?^'\"[]\\") == std::string::npos;
-    line += (line.empty() ? "" : " ") + (plain ? text : "'" + text + "'");
+    append(line, plain ? text : "'" + text + "'", " ");
   }
   return line;
 }
 
-void append(ComparedResult& to, const json& document, const std::string& path) {
+void add_file(ComparedResult& to, const json& document, const std::string& path) {
   const json& context = document.at("context");
   for (const json& entry : document.at("points")) {
     to.points.push_back(compared_point(entry));
@@ -143,7 +143,7 @@ ComparedResult read_compared(const std::vector<std::string>& paths) {
   for (const std::string& path : paths) {
     const json document = read_any(path);
     try {
-      append(result, document, path);
+      add_file(result, document, path);
     } catch (const json::exception& error) {
       throw UsageError("'" + path + "' is not a result file: " + error.what());
     }
