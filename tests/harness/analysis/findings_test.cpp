@@ -1,5 +1,4 @@
-// What is found in result files whose times are made up: sentences, exponents that are known
-// beforehand, and what methods reach within a frame's time.
+// Findings from invented times: sentences, known exponents, and budgets.
 #include "harness/analysis/findings.h"
 
 #include <gtest/gtest.h>
@@ -61,7 +60,7 @@ json resolution_run(const std::string& solver, int n, double seconds_a_step) {
   return p;
 }
 
-// Two methods have runs at three sizes; a third one, whose steps all take the same, at two of them.
+// Two methods have runs at three sizes; a third one, whose steps all take the same time, at two.
 Growth growth_of(double yarn_power, double scatter) {
   std::vector<json> points;
   for (const int n : {1001, 101, 317}) {
@@ -112,9 +111,9 @@ TEST(Growth, IntervalsHoldTheTruthAsOftenAsTheySay) {
   EXPECT_LT(inside, 400);
 }
 
-// ---- What methods reach within a frame's time ----
+// ---- Budgets ----
 
-// A run whose frames take that long; a second of rates must not be mistaken for it.
+// The median, and the times at another rate, must not be mistaken for `seconds`.
 json framed(json run, double seconds) {
   run["frame_times"] = {{24.0, seconds, 9.0, 9.0}, {frame_rate, 1e-6, seconds, 9.0}};
   return run;

@@ -1,4 +1,4 @@
-// The plane strain x error of a result file whose times are made up.
+// The strain-error grid of invented times.
 #include "harness/analysis/plane.h"
 
 #include <gtest/gtest.h>
@@ -105,7 +105,7 @@ TEST(Plane, TakesARunAtATighterLimitWhereThatIsFaster) {
   EXPECT_EQ(winner(planes[0].cell(0.01, 0.02)), "chain/icd/n:80/strain:0.01/h:0.02");
 }
 
-// The names that rankings compare with are those whose rows say that the paper has them.
+// all_paper_methods agrees with the registry.
 TEST(Plane, ComparesWithTheMethodsThatThePaperHas) {
   for (const auto& backend : inextensible::backends()) {
     if (std::string(backend.name) != backend.method) continue;  // in another stepper

@@ -1,5 +1,4 @@
-// The statistics of a comparison against scipy's numbers and against themselves; its changes, its
-// gate and its reports.
+// The rank test against scipy's numbers; changes, gates and reports.
 #include "harness/compare/comparison.h"
 
 #include <gtest/gtest.h>

@@ -84,7 +84,7 @@ TEST(CompareInPairs, FindsWhatHasBecomeSlowerByAFifth) {
   EXPECT_GE(found, 45);
 }
 
-// Slow in the first look only, as a neighbour's load would have it.
+// Slow in the first look only, as under another program's load.
 TEST(CompareInPairs, TimesFoundOnceOnlyAreNoRegression) {
   int runs = 0;
   const auto comparison = compared({"a"}, [&runs](Side side, const PairedPoint&) {
@@ -98,7 +98,7 @@ TEST(CompareInPairs, TimesFoundOnceOnlyAreNoRegression) {
       << comparison.points[0].text();
 }
 
-// A machine so busy that no test of 15 pairs finds a doubled time.
+// On a machine so busy that a test of 15 pairs may miss it.
 TEST(CompareInPairs, ADoubledTimeIsNeverTheSame) {
   std::mt19937_64 random(1);
   std::lognormal_distribution<double> noise(0, 1.5);
