@@ -41,12 +41,10 @@ struct HardCase {
   Expectation expectation(const std::string& solver) const;
 };
 
-// Values that series of cases run over, by name: distances (from the singular positions Q1 to Q4),
-// limits (strain, of taut scenes), ratios (of masses), links (of long chains), sides (vertices
-// along large cloths), scales (of far starts).
+// The values that series of cases run over, by the name of their list.
 using HardCaseValues = std::map<std::string, std::vector<double>>;
 
-// profile: quick, default or paper, which differ in how large chains and cloths grow.
+// profile: quick, default or paper.
 HardCaseValues hard_case_values(const std::string& profile);
 // values: lists under all of these names.
 std::vector<HardCase> hard_cases(const HardCaseValues& values);

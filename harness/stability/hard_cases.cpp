@@ -29,7 +29,8 @@ constexpr double closest_point_energy = 3;
 
 // A power of two, so that the candidates on the singular positions are reached exactly.
 constexpr double q_step = 1.0 / 128;
-constexpr double q_limit = 5e-7;  // between two of the distances that hard_case_values() has
+constexpr double q_limit =
+    5e-7;  // between two of the distances of the series "Q1 near" to "Q4 near"
 
 Trial one_step(Mesh mesh, const Positions& candidate) {
   mesh.parts.gravity.setZero();
@@ -301,18 +302,7 @@ constexpr Impossible impossible_numbers[] = {
 }  // namespace
 
 HardCaseValues hard_case_values(const std::string& profile) {
-  HardCaseValues values{{"distances", {1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12}},
-                        {"limits", {0.01, 0.001}},
-                        {"ratios", {1e2, 1e4, 1e6, 1e8}},
-                        {"links", {10, 100, 1000}},
-                        {"sides", {21}},
-                        {"scales", {1.5, 0.5}}};
-  if (profile != "quick") {
-    values["links"] = {10, 100, 1000, 10000, 100000};
-    values["sides"] = {21, 51};
-  }
-  if (profile == "paper") values["sides"] = {21, 51, 101, 201};
-  return values;
+  return hard_cases_document().at("values").at(profile);
 }
 
 std::vector<HardCase> hard_cases(const HardCaseValues& values) {
