@@ -89,11 +89,11 @@ Case net(std::uint64_t seed, int n, int pins, double speed, double step, int ste
   const auto uniform = [&random](double low, double high) {
     return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
   };
-  cases::Mesh mesh = cases::points(n * n, 0);
+  Draft mesh = cases::points(n * n, 0);
   mesh.parts.gravity.setZero();
-  Positions& x = mesh.start.x;
+  Positions& x = mesh.scene.start.x;
   const auto join = [&](int a, int b) {
-    if (a >= pins || b >= pins) cases::join(mesh, a, b, (x.col(b) - x.col(a)).norm());
+    if (a >= pins || b >= pins) mesh.constrain(a, b, (x.col(b) - x.col(a)).norm());
   };
   for (int v = 0; v < n * n; ++v) {
     const int row = v / n, column = v % n;
@@ -101,16 +101,13 @@ Case net(std::uint64_t seed, int n, int pins, double speed, double step, int ste
     mesh.parts.mass[v] = uniform(0.1, 1);
     if (v < pins) mesh.parts.pinned.push_back(v);
     for (int axis = 0; axis < 3 && v >= pins; ++axis)
-      mesh.start.v(axis, v) = uniform(-speed, speed);
+      mesh.scene.start.v(axis, v) = uniform(-speed, speed);
     if (column > 0) join(v - 1, v);
     if (row > 0) join(v, v - n);  // both orientations occur
   }
-  Scene scene;
-  scene.size = n;
-  scene.start = std::move(mesh.start);
-  scene.problem = std::make_shared<const Problem>(std::move(mesh.parts));
-  return case_of(text("net of ", n, " x ", n, ", seed ", seed), std::move(scene), step, steps,
-                 limit);
+  mesh.scene.size = n;
+  return case_of(text("net of ", n, " x ", n, ", seed ", seed), finished(std::move(mesh)), step,
+                 steps, limit);
 }
 
 // The drape without the parts that the solver does not take.

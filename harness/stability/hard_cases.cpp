@@ -32,9 +32,9 @@ constexpr double q_step = 1.0 / 128;
 constexpr double q_limit =
     5e-7;  // between two of the distances of the series "Q1 near" to "Q4 near"
 
-Trial one_step(Mesh mesh, const Positions& candidate) {
+Trial one_step(Draft mesh, const Positions& candidate) {
   mesh.parts.gravity.setZero();
-  mesh.start.v = (candidate - mesh.start.x) / q_step;
+  mesh.scene.start.v = (candidate - mesh.scene.start.x) / q_step;
   Trial trial = trial_of(std::move(mesh), q_step, 1, q_limit);
   trial.stiffness = 1e6;
   trial.energy_tolerance = closest_point_energy;
@@ -44,11 +44,11 @@ Trial one_step(Mesh mesh, const Positions& candidate) {
 
 // An edge of 1 m along x, pinned at the origin; its free end goes to (x, y).
 Trial one_edge(double x, double y) {
-  Mesh mesh = points(2, 1);
-  mesh.start.x(0, 1) = 1;
+  Draft mesh = points(2, 1);
+  mesh.scene.start.x(0, 1) = 1;
   mesh.parts.pinned = {0};
-  join(mesh, 0, 1, 1);
-  Positions candidate = mesh.start.x;
+  mesh.constrain(0, 1, 1);
+  Positions candidate = mesh.scene.start.x;
   candidate.col(1) << x, y, 0;
   return one_step(std::move(mesh), candidate);
 }
@@ -56,14 +56,14 @@ Trial one_edge(double x, double y) {
 // Two edges of 1 m from pins at (-half_span, 0) and (half_span, 0) to a vertex between them that
 // goes from (0, y) to (0, candidate_y).
 Trial two_edges(double half_span, double y, double candidate_y) {
-  Mesh mesh = points(3, 1);
-  mesh.start.x.col(0) << -half_span, 0, 0;
-  mesh.start.x.col(1) << 0, y, 0;
-  mesh.start.x.col(2) << half_span, 0, 0;
+  Draft mesh = points(3, 1);
+  mesh.scene.start.x.col(0) << -half_span, 0, 0;
+  mesh.scene.start.x.col(1) << 0, y, 0;
+  mesh.scene.start.x.col(2) << half_span, 0, 0;
   mesh.parts.pinned = {0, 2};
-  join(mesh, 0, 1, 1);
-  join(mesh, 1, 2, 1);
-  Positions candidate = mesh.start.x;
+  mesh.constrain(0, 1, 1);
+  mesh.constrain(1, 2, 1);
+  Positions candidate = mesh.scene.start.x;
   candidate(1, 1) = candidate_y;
   return one_step(std::move(mesh), candidate);
 }
@@ -81,37 +81,37 @@ Trial taut(Trial trial) {
 }
 
 Trial duplicate_edge(double /*value*/) {
-  Mesh mesh = chain(1);
-  join(mesh, 0, 1, 1.1);
+  Draft mesh = chain(1);
+  mesh.constrain(0, 1, 1.1);
   return trial_of(std::move(mesh), 0.01, 3);
 }
 
 // ---- Collapsed and degenerate starts ----
 
 Trial coincident(double /*value*/) {
-  Mesh mesh = chain(3, along, false);
-  mesh.start.x.col(2) = mesh.start.x.col(1);
-  mesh.start.x.col(3) = mesh.start.x.col(1) + Eigen::Vector3d(1.0 / 3, 0, 0);
+  Draft mesh = chain(3, along, false);
+  mesh.scene.start.x.col(2) = mesh.scene.start.x.col(1);
+  mesh.scene.start.x.col(3) = mesh.scene.start.x.col(1) + Eigen::Vector3d(1.0 / 3, 0, 0);
   return trial_of(std::move(mesh), 0.01, 3);
 }
 
 Trial folded(double /*value*/) {
-  Mesh mesh = chain(20);
-  for (int i = 0; i <= 20; ++i) mesh.start.x.col(i) << 0.05 * (i % 2), 0, 0;
+  Draft mesh = chain(20);
+  for (int i = 0; i <= 20; ++i) mesh.scene.start.x.col(i) << 0.05 * (i % 2), 0, 0;
   return trial_of(std::move(mesh), 1.0 / 400, 200);
 }
 
 // ---- Masses of unlike vertices ----
 
 Trial heavy_end(double ratio) {
-  Mesh mesh = chain(20);
+  Draft mesh = chain(20);
   mesh.parts.mass.back() *= ratio;
   return trial_of(std::move(mesh), 1.0 / 400, 40);
 }
 
 // Three swings of the same from horizontal, in the steps of a game.
 Trial heavy_swing(double /*value*/) {
-  Mesh mesh = chain(20);
+  Draft mesh = chain(20);
   mesh.parts.mass.back() *= 100;
   Trial trial = trial_of(std::move(mesh), 1.0 / 60, 180);
   trial.stiffness = 1e5;
@@ -120,7 +120,7 @@ Trial heavy_swing(double /*value*/) {
 }
 
 Trial light_between(double ratio) {
-  Mesh mesh = chain(20);
+  Draft mesh = chain(20);
   for (std::size_t i = 1; i < 20; i += 2) mesh.parts.mass[i] /= ratio;
   Trial trial = trial_of(std::move(mesh), 1.0 / 400, 40);
   trial.slack = std::sqrt(3 * trial.strain_limit / 8) * 0.1;  // two links between heavy ends
@@ -128,7 +128,7 @@ Trial light_between(double ratio) {
 }
 
 Trial heavy_patch(double ratio) {
-  Mesh mesh = hung_cloth(11);
+  Draft mesh = hung_cloth(11);
   for (int i = 4; i < 7; ++i)
     for (int j = 4; j < 7; ++j) mesh.parts.mass[11 * i + j] *= ratio;
   return trial_of(std::move(mesh), 1.0 / 400, 40);
@@ -138,28 +138,28 @@ Trial heavy_patch(double ratio) {
 
 // Hangs down by half of its length and goes up again.
 Trial crack(double /*value*/) {
-  Mesh mesh = chain(40);
+  Draft mesh = chain(40);
   const double gap = 1e-3;
   for (int i = 0; i <= 40; ++i)
-    mesh.start.x.col(i) << (i > 20 ? gap * 20 : gap * i), -(i > 20 ? 40 - i : i) / 40.0, 0;
+    mesh.scene.start.x.col(i) << (i > 20 ? gap * 20 : gap * i), -(i > 20 ? 40 - i : i) / 40.0, 0;
   for (std::size_t k = 0; k < 40; ++k) {
     const auto e = static_cast<Eigen::Index>(k);
-    mesh.parts.rest_length[k] = (mesh.start.x.col(e + 1) - mesh.start.x.col(e)).norm();
+    mesh.parts.rest_length[k] = (mesh.scene.start.x.col(e + 1) - mesh.scene.start.x.col(e)).norm();
   }
   return trial_of(std::move(mesh), 1.0 / 800, 400);
 }
 
 Trial spin(double /*value*/) {
-  Mesh mesh = chain(20, along, false);
+  Draft mesh = chain(20, along, false);
   mesh.parts.gravity.setZero();
-  for (int i = 0; i <= 20; ++i) mesh.start.v(1, i) = 100 * (i / 20.0 - 0.5);
+  for (int i = 0; i <= 20; ++i) mesh.scene.start.v(1, i) = 100 * (i / 20.0 - 0.5);
   return trial_of(std::move(mesh), 1e-3, 200);
 }
 
 Trial hit(double /*value*/) {
-  Mesh mesh = cloth(15);
+  Draft mesh = cloth(15);
   mesh.parts.pinned.clear();
-  mesh.start.v(1, 7 * 15 + 7) = 100;
+  mesh.scene.start.v(1, 7 * 15 + 7) = 100;
   Trial trial = trial_of(std::move(mesh), 1e-3, 100);
   trial.energy_tolerance = closest_point_energy;
   return trial;
@@ -177,7 +177,7 @@ Trial jump(double /*value*/) {
 
 // Ten steps, with a budget of edge visits that passes may spend on a step, and of iterations of
 // projections.
-Trial with_budget(Mesh mesh) {
+Trial with_budget(Draft mesh) {
   Trial trial = trial_of(std::move(mesh), 1.0 / 400, 10);
   const double passes = std::max(100.0, 2e8 / trial.scene.problem->constraints());
   for (const auto& backend : inextensible::backends()) {
@@ -209,21 +209,21 @@ Trial on_a_ball(const char* parameter, double value, double speed = 0, double de
 // ---- Starts far from the manifold, and whether errors pile up over steps ----
 
 Trial scaled(double scale) {
-  Mesh mesh = chain(20);
-  mesh.start.x *= scale;
+  Draft mesh = chain(20);
+  mesh.scene.start.x *= scale;
   Trial trial = trial_of(std::move(mesh), 1.0 / 100, 20);
   trial.energy_tolerance = closest_point_energy;  // the release moves vertices by many edges a step
   return trial;
 }
 
 Trial noise(double /*value*/) {
-  Mesh mesh = hung_cloth(11);
+  Draft mesh = hung_cloth(11);
   std::mt19937_64 random(7);
-  add_noise(mesh.start.x, mesh.parts.pinned, 0.03, random);
+  add_noise(mesh.scene.start.x, mesh.parts.pinned, 0.03, random);
   return trial_of(std::move(mesh), 1.0 / 100, 20);
 }
 
-Trial ten_seconds(Mesh mesh) { return trial_of(std::move(mesh), 1.0 / 100, 1000); }
+Trial ten_seconds(Draft mesh) { return trial_of(std::move(mesh), 1.0 / 100, 1000); }
 
 Trial with_noise_every_step(Trial trial) {
   trial.disturb = [random = std::make_shared<std::mt19937_64>(7)](State& state, int) {
@@ -290,13 +290,13 @@ constexpr Builder builders[] = {
 struct Impossible {
   const char* what;
   bool state;  // any number but NaN and infinity would be possible
-  void (*put)(Mesh&, double);
+  void (*put)(Draft&, double);
 };
 constexpr Impossible impossible_numbers[] = {
-    {"position", true, [](Mesh& m, double v) { m.start.x(1, 2) = v; }},
-    {"velocity", true, [](Mesh& m, double v) { m.start.v(0, 3) = v; }},
-    {"mass", false, [](Mesh& m, double v) { m.parts.mass[2] = v; }},
-    {"length", false, [](Mesh& m, double v) { m.parts.rest_length[1] = v; }},
+    {"position", true, [](Draft& m, double v) { m.scene.start.x(1, 2) = v; }},
+    {"velocity", true, [](Draft& m, double v) { m.scene.start.v(0, 3) = v; }},
+    {"mass", false, [](Draft& m, double v) { m.parts.mass[2] = v; }},
+    {"length", false, [](Draft& m, double v) { m.parts.rest_length[1] = v; }},
 };
 
 }  // namespace
@@ -326,7 +326,7 @@ std::vector<HardCase> hard_cases(const HardCaseValues& values) {
       if (state && std::isfinite(value)) continue;
       const std::string name = std::string(what) + " " + number_text(value);
       all.push_back({"not a number", "door/" + name, name + " of a vertex or edge", [=, put = put] {
-                       Mesh mesh = chain(4);
+                       Draft mesh = chain(4);
                        put(mesh, value);
                        return trial_of(std::move(mesh), 0.01, 3);
                      }});

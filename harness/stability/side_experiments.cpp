@@ -57,13 +57,13 @@ LargestStep largest_step(const StabilityScene& scene, const std::string& solver,
 namespace {
 
 // Rank of the Jacobian of | d |^2 / l over all coordinates.
-int rank_of_jacobian(const cases::Mesh& mesh, int constraints, int coordinates) {
+int rank_of_jacobian(const Draft& mesh, int constraints, int coordinates) {
   std::vector<Eigen::Triplet<double>> entries;
   for (int k = 0; k < constraints; ++k) {
     const auto e = static_cast<std::size_t>(k);
     const auto [a, b] = mesh.parts.edges[e];
     const Eigen::Vector3d u =
-        2 * (mesh.start.x.col(b) - mesh.start.x.col(a)) / mesh.parts.rest_length[e];
+        2 * (mesh.scene.start.x.col(b) - mesh.scene.start.x.col(a)) / mesh.parts.rest_length[e];
     for (int axis = 0; axis < 3; ++axis) {
       entries.emplace_back(k, 3 * a + axis, -u[axis]);
       entries.emplace_back(k, 3 * b + axis, u[axis]);
@@ -82,7 +82,7 @@ std::vector<Freedom> degrees_of_freedom(int n) {
                             {"triangles", cases::cloth(n, true)},
                             {"midpoints", cases::midpoint_cloth(n)}}) {
     std::mt19937_64 random(1);
-    cases::add_noise(mesh.start.x, {}, 0.2 / (n - 1), random);
+    cases::add_noise(mesh.scene.start.x, {}, 0.2 / (n - 1), random);
     const auto edges = static_cast<int>(mesh.parts.edges.size()),
                coordinates = static_cast<int>(3 * mesh.parts.mass.size());
     const int rank = rank_of_jacobian(mesh, edges, coordinates);
