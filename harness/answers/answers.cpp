@@ -1,7 +1,7 @@
 // The known answers of configs/answers.json, and what solvers make of them.
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
+#include <functional>
 #include <map>
 #include <numeric>
 
@@ -23,6 +23,11 @@
 #include "solvers/registry.h"
 
 namespace harness {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(KnownAnswer, name, scene, given, quantity, source,
+                                                strain_limit, needs_multipliers, continuum,
+                                                until_read, stiffness)
+
 namespace {
 
 using nlohmann::json;
@@ -40,31 +45,20 @@ const std::map<std::string, double (*)(const SceneParameters&)> formulas{
     {"folded_speed", [](const SceneParameters&) { return 1 / std::sqrt(1 - folded_part); }}};
 
 KnownAnswer known_answer_of(const json& entry) {
-  KnownAnswer answer{entry.at("name"),
-                     entry.at("scene"),
-                     entry.at("given"),
-                     entry.at("quantity"),
-                     entry.at("source"),
-                     entry.at("strain_limit"),
-                     {},
-                     {},
-                     reading_named(entry.at("reading")),
-                     entry.value("needs_multipliers", false),
-                     entry.value("continuum", false),
-                     entry.value("until_read", false),
-                     entry.value("stiffness", unknown)};
+  KnownAnswer answer = entry;
+  answer.reading = reading_named(entry.at("reading"));
   for (int i = 0; i < entry.at("steps").get<int>(); ++i)
     answer.steps.push_back(std::ldexp(entry.at("first_step").get<double>(), -i));
-  json exact = entry.value("exact", json());
   if (entry.contains("fabric")) {
     const Fabric& cloth = fabric(entry.at("fabric").get<std::string>());
     answer.given["density"] = cloth.density;
     answer.given["bending"] = cloth.bending;
-    exact = cloth.drape_coefficient;
+    answer.exact = cloth.drape_coefficient;
+  } else if (const json& exact = entry.at("exact"); exact.is_string()) {
+    answer.exact = formulas.at(exact)(complete_parameters(*find_scene(answer.scene), answer.given));
+  } else {
+    answer.exact = exact;
   }
-  answer.exact = [exact](const AnswerScene& at) {
-    return exact.is_string() ? formulas.at(exact)(at.parameters) : exact.get<double>();
-  };
   return answer;
 }
 
@@ -85,11 +79,6 @@ std::span<const KnownAnswer> known_answers() {
     return all;
   }();
   return table;
-}
-
-const KnownAnswer* find_answer(std::string_view name) {
-  const auto found = std::ranges::find(known_answers(), name, &KnownAnswer::name);
-  return found == known_answers().end() ? nullptr : &*found;
 }
 
 // ---- Runs of solvers ----
@@ -237,7 +226,7 @@ AnswerOutcome run_answers(const std::vector<AnswerRun>& plan, double timeout,
   std::size_t all = 0;
   for (const AnswerRun& run : plan) all += run.answer->steps.size();
   for (const AnswerRun& run : plan) {
-    const double exact = run.answer->exact(run.answer->at());
+    const double exact = run.answer->exact;
     std::vector<double> deviations;
     for (const double step : run.answer->steps) {
       if (events.interrupted()) throw Interrupted();
@@ -266,14 +255,13 @@ json answers_document(json context, const std::vector<AnswerRun>& plan,
   for (const AnswerRun& run : plan) {
     if (run.answer == std::exchange(last, run.answer)) continue;
     const KnownAnswer& answer = *run.answer;
-    const AnswerScene at = answer.at();
     answers.push_back({{"name", answer.name},
                        {"scene", answer.scene},
-                       {"scene_parameters", at.parameters},
+                       {"scene_parameters", answer.at().parameters},
                        {"quantity", answer.quantity},
                        {"source", answer.source},
                        {"strain_limit", answer.strain_limit},
-                       {"exact", answer.exact(at)},
+                       {"exact", answer.exact},
                        {"continuum", answer.continuum}});
   }
   for (const AnswerRow& row : outcome.rows) {
