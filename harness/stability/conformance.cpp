@@ -420,7 +420,7 @@ Findings all_hard_cases(const Examinee& solver) {
   const char* check = "hard cases";
   if (!solver.options.hard_cases) return {not_applicable(check, "left out")};
   if (!solver.backend.contestant) return {not_applicable(check, "for contestants only")};
-  const StabilityPlan plan{{solver.backend.name}, hard_cases(hard_case_values("quick"))};
+  const StabilityPlan plan{{solver.backend.name}, hard_cases("quick")};
   const StabilityOutcome outcome = run_stability(plan, solver.options.seed, {});
   std::map<Outcome, int> ended;
   std::string advice;
@@ -485,10 +485,6 @@ std::vector<Finding> examine(const std::string& solver, const ConformanceOptions
     }
   }
   return findings;
-}
-
-bool conforms(const std::vector<Finding>& findings) {
-  return std::ranges::count(findings, Grade::fail, &Finding::grade) == 0;
 }
 
 }  // namespace harness

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
 #include <random>
-#include <string_view>
 
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
@@ -69,10 +69,6 @@ Trial two_edges(double half_span, double y, double candidate_y) {
 }
 
 // ---- Rows at full length between pins, and constraints that cannot be met ----
-
-Scene row_of_links(double stretch) {
-  return built_scene("taut_row", {{"stretch", stretch}, {"duration", 0.5}});
-}
 
 // A row of 1 m that is strained by s sags by sqrt(3 s / 8) m.
 Trial taut(Trial trial) {
@@ -235,16 +231,15 @@ Trial with_noise_every_step(Trial trial) {
 // ---- All of them ----
 
 // How cases are built: one by its name, a series by its row, with a value of its list.
-struct Builder {
-  std::string_view name;
-  Trial (*build)(double value);
-};
-constexpr Builder builders[] = {
+const std::map<std::string, Trial (*)(double value)> builders{
     {"Q1", [](double) { return one_edge(0, 2); }},
     {"Q2", [](double) { return one_edge(0, 0.5); }},
     {"Q3", [](double) { return two_edges(0.6, 0.8, 0); }},
     {"Q4", [](double) { return two_edges(1, 0, 0.01); }},
-    {"infeasible/row", [](double) { return trial_of(row_of_links(1.2), 1.0 / 100, 3); }},
+    {"infeasible/row",
+     [](double) {
+       return trial_of(built_scene("taut_row", {{"stretch", 1.2}}), 1.0 / 100, 3);
+     }},
     {"infeasible/duplicate", duplicate_edge},
     {"triangles", [](double) { return taut(trial_of(cloth(9, true), 1.0 / 400, 100)); }},
     {"triangles/midpoints",
@@ -271,7 +266,10 @@ constexpr Builder builders[] = {
     {"Q2 near", [](double d) { return one_edge(d, 0.5); }},
     {"Q3 near", [](double d) { return two_edges(0.6, 0.8, 0.8 * d); }},
     {"Q4 near", [](double d) { return two_edges(std::sqrt(1 - d * d), d, d + 0.01); }},
-    {"taut row", [](double limit) { return taut(trial_of(row_of_links(1), 1.0 / 200, 0, limit)); }},
+    {"taut row",
+     [](double limit) {
+       return taut(trial_of(built_scene("taut_row", {{"duration", 0.5}}), 1.0 / 200, 0, limit));
+     }},
     {"1 m patch",
      [](double limit) {
        return taut(
@@ -301,25 +299,24 @@ constexpr Impossible impossible_numbers[] = {
 
 }  // namespace
 
-HardCaseValues hard_case_values(const std::string& profile) {
+std::map<std::string, std::vector<double>> hard_case_values(const std::string& profile) {
   return hard_cases_document().at("values").at(profile);
 }
 
-std::vector<HardCase> hard_cases(const HardCaseValues& values) {
+std::vector<HardCase> hard_cases(const std::string& profile) {
+  const auto values = hard_case_values(profile);
   std::vector<HardCase> all;
   for (const nlohmann::json& entry : hard_cases_document().at("cases")) {
     const std::string name = entry.at("name"), row = entry.at("row"), what = entry.at("what"),
                       over = entry.value("over", ""), key = over.empty() ? name : row;
-    const auto found = std::ranges::find(builders, key, &Builder::name);
-    if (found == std::end(builders))
+    const auto found = builders.find(key);
+    if (found == builders.end())
       throw UsageError("hard cases: nothing in harness/stability/hard_cases.cpp builds '" + key +
                        "'");
-    const auto build_at = [build = found->build](double value) {
-      return [build, value] { return build(value); };
-    };
-    if (over.empty()) all.push_back({row, name, what, build_at(unknown)});
-    for (const double value : over.empty() ? std::vector<double>() : values.at(over))
-      all.push_back({row, name + "/" + number_text(value), what, build_at(value), value});
+    for (const double value : over.empty() ? std::vector{unknown} : values.at(over)) {
+      all.push_back({row, over.empty() ? name : name + "/" + number_text(value), what,
+                     [build = found->second, value] { return build(value); }, value});
+    }
   }
   for (const auto& [what, state, put] : impossible_numbers) {
     for (const double value : {std::numeric_limits<double>::quiet_NaN(), HUGE_VAL, 0.0, -1.0}) {

@@ -124,8 +124,6 @@ struct StabilityOutcome {
   bool complete = true;  // false: interrupted
 
   ExpectationCounts counts() const;
-  // Nothing differs from what theory expects but what known_differences() lists.
-  bool nothing_new() const { return counts().new_differences == 0; }
 };
 
 // The key of a cell's result.

@@ -74,11 +74,8 @@ TEST(ScenesOfKnownMotion, ObeyTheEquationsOfMotion) {
   for (const auto& [name, given, tolerance] : cases) {
     const AnswerScene built = answer_scene(name, given);
     const auto at = [&built](double t) { return built.type->exact(built.parameters, t); };
-    EXPECT_LT((at(0) - built.scene.start.x).cwiseAbs().maxCoeff(), 1e-12) << name;
     const double dt = 1e-4;
     const Positions acceleration = (at(dt) - 2 * at(0) + at(-dt)) / (dt * dt);
-    EXPECT_LT(((at(dt) - at(-dt)) / (2 * dt) - built.scene.start.v).cwiseAbs().maxCoeff(), 1e-3)
-        << name;
     EXPECT_LT((inextensible::constrained_acceleration(*built.scene.problem, built.scene.start) -
                acceleration)
                   .cwiseAbs()
