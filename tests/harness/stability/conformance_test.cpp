@@ -12,7 +12,6 @@
 #include "harness/stability/stability.h"
 #include "solvers/registry.h"
 #include "support/effort.h"
-#include "support/param_name.h"
 
 namespace inextensible {
 namespace {
@@ -125,8 +124,10 @@ std::unique_ptr<Stepper> over_relaxed(std::shared_ptr<const Problem> problem,
   return make_stepper("gauss_seidel", std::move(problem), options);
 }
 
-std::set<std::string> failed_checks(const std::string& solver, bool hard_cases = false) {
-  std::set<std::string> failed;
+using Checks = std::set<std::string>;
+
+Checks failed_checks(const std::string& solver, bool hard_cases = false) {
+  Checks failed;
   for (const Finding& finding : examine(solver, {1, hard_cases})) {
     if (finding.grade != Finding::Grade::fail) continue;
     failed.insert(finding.check);
@@ -147,8 +148,6 @@ class BrokenSolvers : public ::testing::Test {
     add_backends(rows);
   }
 };
-
-using Checks = std::set<std::string>;
 
 TEST_F(BrokenSolvers, FailTheCheckThatIsMeantForThemAndNoOther) {
   if (testing::sanitized) GTEST_SKIP() << "too slow with sanitizers";
@@ -179,23 +178,12 @@ TEST_F(BrokenSolvers, CannotTakeANameOrBringHalfARow) {
   EXPECT_TRUE(is_built_in("dense_newton"));
 }
 
-class BuiltInSolvers : public ::testing::TestWithParam<const char*> {};
-
-TEST_P(BuiltInSolvers, Conform) {
+TEST(BuiltInSolvers, Conform) {
   if (testing::sanitized) GTEST_SKIP() << "too slow with sanitizers";
-  EXPECT_EQ(failed_checks(GetParam(), true), Checks{});
-}
-
-std::vector<const char*> built_in() {
-  std::vector<const char*> names;
   for (const Backend& backend : backends()) {
-    if (is_built_in(backend.name)) names.push_back(backend.name);
+    if (is_built_in(backend.name)) EXPECT_EQ(failed_checks(backend.name, true), Checks{});
   }
-  return names;
 }
-
-INSTANTIATE_TEST_SUITE_P(All, BuiltInSolvers, ::testing::ValuesIn(built_in()),
-                         names::contestant_name);
 
 }  // namespace
 }  // namespace inextensible
