@@ -12,6 +12,7 @@
 #include "harness/stability/stability.h"
 #include "solvers/registry.h"
 #include "support/effort.h"
+#include "support/param_name.h"
 
 namespace inextensible {
 namespace {
@@ -178,12 +179,17 @@ TEST_F(BrokenSolvers, CannotTakeANameOrBringHalfARow) {
   EXPECT_TRUE(is_built_in("dense_newton"));
 }
 
-TEST(BuiltInSolvers, Conform) {
+class BuiltInSolvers : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(BuiltInSolvers, Conform) {
   if (testing::sanitized) GTEST_SKIP() << "too slow with sanitizers";
-  for (const Backend& backend : backends()) {
-    if (is_built_in(backend.name)) EXPECT_EQ(failed_checks(backend.name, true), Checks{});
-  }
+  EXPECT_EQ(failed_checks(GetParam(), true), Checks{});
 }
+
+INSTANTIATE_TEST_SUITE_P(All, BuiltInSolvers, ::testing::ValuesIn(names::rows_that([](auto& row) {
+                           return is_built_in(row.name);
+                         })),
+                         names::contestant_name);
 
 }  // namespace
 }  // namespace inextensible
