@@ -299,10 +299,9 @@ Findings refusal(const Examinee& solver) {
 Findings permissible_candidate(const Examinee& solver) {
   const char* check = "permissible candidate";
   // A setting of this name means the same in every row (setting_fields.h), plug-ins' too.
-  for (const auto& setting : solver.backend.settings) {
-    if (setting.name == std::string("min_iterations") && std::get<double>(setting.initial) > 0)
-      return {not_applicable(check, "corrected too, by its setting min_iterations")};
-  }
+  inextensible::Settings defaults = complete_settings(solver.backend, {});
+  if (defaults.contains("min_iterations") && std::get<double>(defaults["min_iterations"]) > 0)
+    return {not_applicable(check, "corrected too, by its setting min_iterations")};
   if (!keeps_a_limit(solver.backend)) return {not_applicable(check, "no limit of its own")};
   double moved = 0, worst = 0, worst_candidate = 0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
@@ -377,9 +376,8 @@ Findings consistency(const Examinee& solver) {
   // How far a step is iterated is a tolerance, not a part of the formula: it must not be what
   // shows.
   inextensible::Settings settings;
-  for (const auto& info : solver.backend.settings) {
-    if (info.name == std::string("direction_tolerance")) settings[info.name] = 0.01;
-  }
+  if (complete_settings(solver.backend, {}).contains("direction_tolerance"))
+    settings["direction_tolerance"] = 0.01;
   std::vector<Positions> ends;
   for (const int refinement : {1, 2, 16}) {
     const auto stepper = stepper_for(solver, c, settings);
