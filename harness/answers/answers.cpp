@@ -170,9 +170,9 @@ Ending run_calibrated(const KnownAnswer& answer, const Backend& backend, double 
   return {{.detail = found.detail}};
 }
 
-// The order of accuracy that the last deviations show, from step to step of half the size: of a
-// continuum against what small steps lead to, from three steps, instead of the exact value. What
-// the strain limit permits is no error of the method: below a few times of it no order shows.
+// The order of accuracy from the last two deviations, at a step and its half. Runs of a continuum
+// do not tend to the exact value: differences between deviations at three steps take their place.
+// What the strain limit permits is no error of the method: near it no order shows.
 double order_of(const KnownAnswer& answer, std::vector<double> deviations) {
   if (answer.continuum)
     std::adjacent_difference(deviations.begin(), deviations.end(), deviations.begin());
@@ -182,7 +182,7 @@ double order_of(const KnownAnswer& answer, std::vector<double> deviations) {
   return std::abs(fine) > 10 * answer.strain_limit ? std::log2(std::abs(coarse / fine)) : unknown;
 }
 
-// The value, and why there is none. Throws Interrupted.
+// The value, or why there is none. Throws Interrupted.
 json run_apart(const KnownAnswer& answer, const Backend& backend, double step, double timeout,
                const std::function<bool()>& interrupted) {
   // Springs need several runs to find their stiffness.

@@ -63,7 +63,7 @@ Case case_of(std::string name, Scene scene, double h, int steps, double limit = 
           std::move(name)};
 }
 
-// All parts in a row, numbers with three digits.
+// All parts joined, numbers with three digits.
 template <class... Parts>
 std::string text(const Parts&... parts) {
   std::ostringstream stream;
@@ -141,16 +141,16 @@ bool same_bits(const State& a, const State& b) {
 
 // ---- Pins, limit and counters of ordinary scenes at ordinary steps ----
 
-// What runs tell: how far they went, and where they first broke each promise.
+// The worst of several runs, and where each promise was first broken.
 struct Runs {
   std::int64_t steps = 0;
   double worst = 0;  // strain over limit
   double momentum_defect = 0;
   std::string stopped;
-  std::map<Promise, std::string> broken;  // where each was, first
+  std::map<Promise, std::string> broken;  // and where
 
   void take(const Examinee& solver, const Case& c) {
-    stepper_for(solver, c);  // or it is not taken
+    stepper_for(solver, c);  // throws NotTaken
     const TrialResult result =
         run_trial([&c] { return c; }, solver.backend.name, solver.options.seed);
     steps += result.work.steps;
@@ -206,13 +206,13 @@ Findings ordinary_runs(const Examinee& solver) {
 // with a limit near that strain, which edges are depends on the step, and the loss has no order in
 // it.
 constexpr double momentum_limit = 1e-5;
-// What edges may do within their limit has no order in the step: a hundredth of it is let pass.
+// What edges may do within their limit has no order in the step: a hundredth of it is tolerated.
 constexpr double spin_tolerance = 0.01 * momentum_limit;
 // Defect at a quarter of the step over this one: 1/4 for an error of first order in h, 1 for one
 // that steps do not lessen; between the two, on a logarithmic scale.
 constexpr double vanishing = 0.5;
 
-// Infinite if a step is refused.
+// Relative change of angular momentum over the run; infinite if a step is refused.
 double loss_of_spin(const Examinee& solver, const Case& c, int refinement) {
   const Problem& problem = *c.scene.problem;
   const auto stepper = stepper_for(solver, c);

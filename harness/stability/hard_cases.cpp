@@ -105,7 +105,7 @@ Trial heavy_end(double ratio) {
   return trial_of(std::move(mesh), 1.0 / 400, 40);
 }
 
-// Three swings of the same from horizontal, in the steps of a game.
+// The same kind of chain swings three times from horizontal, at the step of a game.
 Trial heavy_swing(double /*value*/) {
   Draft mesh = chain(20);
   mesh.parts.mass.back() *= 100;
@@ -132,7 +132,7 @@ Trial heavy_patch(double ratio) {
 
 // ---- Large rotations and velocities in one step ----
 
-// Hangs down by half of its length and goes up again.
+// The chain hangs down for half of its length and comes up again.
 Trial crack(double /*value*/) {
   Draft mesh = chain(40);
   const double gap = 1e-3;
@@ -171,7 +171,7 @@ Trial jump(double /*value*/) {
 
 // ---- Long chains and large cloths ----
 
-// Ten steps, with a budget of edge visits that passes may spend on a step, and of iterations of
+// Ten steps, with a budget of edge visits for methods that work in passes, and of iterations for
 // projections.
 Trial with_budget(Draft mesh) {
   Trial trial = trial_of(std::move(mesh), 1.0 / 400, 10);
@@ -284,10 +284,10 @@ const std::map<std::string, Trial (*)(double value)> builders{
     {"far start", scaled},
 };
 
-// Numbers that are none, or impossible ones: refused at the door.
+// Numbers that are not finite or are physically impossible: refused at the door.
 struct Impossible {
   const char* what;
-  bool state;  // any number but NaN and infinity would be possible
+  bool state;  // of a state, where any finite number is possible
   void (*put)(Draft&, double);
 };
 constexpr Impossible impossible_numbers[] = {
