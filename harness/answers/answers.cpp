@@ -275,25 +275,23 @@ json answers_document(json context, const std::vector<AnswerRun>& plan,
 }
 
 void print_answers(std::ostream& out, const json& document) {
-  const auto text = [](const json& value, int digits) {
-    return value.is_number() ? number_text(value.get<double>(), digits) : std::string();
-  };
   for (const json& answer : document.at("answers")) {
     const auto word = [&answer](const char* key) { return answer.at(key).get<std::string>(); };
     out << '\n'
         << word("name") << " (" << word("scene") << "): " << word("quantity") << "\n  exact "
-        << text(answer.at("exact"), 6) << ", " << word("source") << '\n';
+        << number_text(answer.at("exact")) << ", " << word("source") << '\n';
     Table table{{}};
-    for (const json& row : document.at("rows")) {
-      if (row.at("answer") != answer.at("name")) continue;
+    for (const json& object : document.at("rows")) {
+      AnswerRow row;
+      read_fields(object, answer_row_fields, row);
+      if (row.answer != word("name")) continue;
       auto& cells = table.rows.emplace_back();
-      cells = {"  " + row.at("solver").get<std::string>(), "h = " + text(row.at("step"), 6)};
-      if (row.at("value").is_number()) {
-        const std::string order = text(row.at("order"), 2);
-        cells.insert(cells.end(),
-                     {text(row.at("value"), 6), order.empty() ? "" : "order " + order});
-      } else if (row.at("detail").is_string()) {
-        cells.push_back(row.at("detail"));
+      cells = {"  " + row.solver, "h = " + number_text(row.step)};
+      if (!std::isnan(row.value)) {
+        cells.push_back(number_text(row.value));
+        cells.push_back(std::isnan(row.order) ? "" : "order " + number_text(row.order, 2));
+      } else if (!row.detail.empty()) {
+        cells.push_back(row.detail);
       }
     }
     print_aligned(out, table);
