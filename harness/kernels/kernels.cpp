@@ -141,7 +141,6 @@ const Moment& moment(const std::string& scene, int n) {
   while (steps < wanted && stepper->advance(m.state, m.h)) ++steps;
   if (steps < wanted)
     std::fprintf(stderr, "kernels: %s:%d: step %d was refused\n", scene.c_str(), n, steps + 1);
-  m.x0.resize(3, m.problem().vertices());
   WorkCounters work;
   unconstrained_step(m.problem(), m.state, m.h, m.x0, work);
   return m;
