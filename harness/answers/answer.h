@@ -1,7 +1,6 @@
 // Figures that theory knows of a scene: what a run makes of them, and what they should be.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -28,26 +27,19 @@ AnswerScene answer_scene(std::string_view name, const SceneParameters& given);
 
 // What readings see of a run.
 struct Motion {
-  Motion(const inextensible::State& start, double h) : before(start), state(start), step(h) {
-    note_free_end();
-  }
+  Motion(const inextensible::State& start, double h) : state(start), step(h) { take(start); }
   // After each accepted step.
   void take(const inextensible::State& after) {
     before = std::exchange(state, after);
-    note_free_end();
+    times.push_back(after.time);
+    free_end.emplace_back(after.x.rightCols<1>());
   }
 
-  inextensible::State before, state;      // of the last step
+  inextensible::State state, before;      // after and before the last step
   double step;                            // s
   std::vector<double> times;              // s, from the start on
   std::vector<Eigen::Vector3d> free_end;  // where the last vertex was at these
   std::vector<double> pulls;  // N s^2, by edge, of the last multipliers; empty if none were shown
-
- private:
-  void note_free_end() {
-    times.push_back(state.time);
-    free_end.emplace_back(state.x.rightCols<1>());
-  }
 };
 
 // What is read off a run; NaN if the run does not show it.
@@ -61,24 +53,23 @@ constexpr double folded_part = 0.9;
 struct KnownAnswer {
   std::string name;  // a-z and _
   std::string scene;
-  SceneParameters given;      // the others have the scene's own values
-  std::string quantity;       // what is read off, with its unit
-  std::string source;         // formula, author, year
-  double strain_limit;        // of the runs: permissible |strain|
-  std::vector<double> steps;  // s, each half of the one before
-  std::function<double(const AnswerScene&)> exact;
-  Reading* reading;
-  bool needs_multipliers;  // of methods that show their iterates alone (Stepper::observe)
-  bool continuum;          // exact in the limit of many vertices: runs tend to something nearby
-  bool until_read;         // a run ends as soon as it tells
-  double stiffness;  // N, of methods without a limit; not-a-number: what keeps the strain limit
+  SceneParameters given;           // the others have the scene's own values
+  std::string quantity;            // what is read off, with its unit
+  std::string source;              // formula, author, year
+  double strain_limit = 0;         // of the runs
+  bool needs_multipliers = false;  // only for methods that show their iterates (Stepper::observe)
+  bool continuum = false;      // exact in the limit of many vertices: runs tend to something nearby
+  bool until_read = false;     // a run ends as soon as it shows the quantity
+  double stiffness = unknown;  // N, of methods without a limit; unknown: calibrated to keep it
+  std::vector<double> steps;   // s, each half of the one before
+  double exact = 0;
+  Reading* reading = nullptr;
 
   AnswerScene at() const { return answer_scene(scene, given); }
 };
 
 // Those of configs/answers.json.
 std::span<const KnownAnswer> known_answers();
-const KnownAnswer* find_answer(std::string_view name);
 
 // ---- Runs of solvers ----
 

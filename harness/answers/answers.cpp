@@ -1,7 +1,7 @@
 // The known answers of configs/answers.json, and what solvers make of them.
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
+#include <functional>
 #include <map>
 #include <numeric>
 
@@ -23,6 +23,11 @@
 #include "solvers/registry.h"
 
 namespace harness {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(KnownAnswer, name, scene, given, quantity, source,
+                                                strain_limit, needs_multipliers, continuum,
+                                                until_read, stiffness)
+
 namespace {
 
 using nlohmann::json;
@@ -40,31 +45,20 @@ const std::map<std::string, double (*)(const SceneParameters&)> formulas{
     {"folded_speed", [](const SceneParameters&) { return 1 / std::sqrt(1 - folded_part); }}};
 
 KnownAnswer known_answer_of(const json& entry) {
-  KnownAnswer answer{entry.at("name"),
-                     entry.at("scene"),
-                     entry.at("given"),
-                     entry.at("quantity"),
-                     entry.at("source"),
-                     entry.at("strain_limit"),
-                     {},
-                     {},
-                     reading_named(entry.at("reading")),
-                     entry.value("needs_multipliers", false),
-                     entry.value("continuum", false),
-                     entry.value("until_read", false),
-                     entry.value("stiffness", unknown)};
+  KnownAnswer answer = entry;
+  answer.reading = reading_named(entry.at("reading"));
   for (int i = 0; i < entry.at("steps").get<int>(); ++i)
     answer.steps.push_back(std::ldexp(entry.at("first_step").get<double>(), -i));
-  json exact = entry.value("exact", json());
   if (entry.contains("fabric")) {
     const Fabric& cloth = fabric(entry.at("fabric").get<std::string>());
     answer.given["density"] = cloth.density;
     answer.given["bending"] = cloth.bending;
-    exact = cloth.drape_coefficient;
+    answer.exact = cloth.drape_coefficient;
+  } else if (const json& exact = entry.at("exact"); exact.is_string()) {
+    answer.exact = formulas.at(exact)(complete_parameters(*find_scene(answer.scene), answer.given));
+  } else {
+    answer.exact = exact;
   }
-  answer.exact = [exact](const AnswerScene& at) {
-    return exact.is_string() ? formulas.at(exact)(at.parameters) : exact.get<double>();
-  };
   return answer;
 }
 
@@ -85,11 +79,6 @@ std::span<const KnownAnswer> known_answers() {
     return all;
   }();
   return table;
-}
-
-const KnownAnswer* find_answer(std::string_view name) {
-  const auto found = std::ranges::find(known_answers(), name, &KnownAnswer::name);
-  return found == known_answers().end() ? nullptr : &*found;
 }
 
 // ---- Runs of solvers ----
@@ -181,9 +170,9 @@ Ending run_calibrated(const KnownAnswer& answer, const Backend& backend, double 
   return {{.detail = found.detail}};
 }
 
-// The order of accuracy that the last deviations show, from step to step of half the size: of a
-// continuum against what small steps lead to, from three steps, instead of the exact value. What
-// the strain limit permits is no error of the method: below a few times of it no order shows.
+// The order of accuracy from the last two deviations, at a step and its half. Runs of a continuum
+// do not tend to the exact value: differences between deviations at three steps take their place.
+// What the strain limit permits is no error of the method: near it no order shows.
 double order_of(const KnownAnswer& answer, std::vector<double> deviations) {
   if (answer.continuum)
     std::adjacent_difference(deviations.begin(), deviations.end(), deviations.begin());
@@ -193,7 +182,7 @@ double order_of(const KnownAnswer& answer, std::vector<double> deviations) {
   return std::abs(fine) > 10 * answer.strain_limit ? std::log2(std::abs(coarse / fine)) : unknown;
 }
 
-// The value, and why there is none. Throws Interrupted.
+// The value, or why there is none. Throws Interrupted.
 json run_apart(const KnownAnswer& answer, const Backend& backend, double step, double timeout,
                const std::function<bool()>& interrupted) {
   // Springs need several runs to find their stiffness.
@@ -237,7 +226,7 @@ AnswerOutcome run_answers(const std::vector<AnswerRun>& plan, double timeout,
   std::size_t all = 0;
   for (const AnswerRun& run : plan) all += run.answer->steps.size();
   for (const AnswerRun& run : plan) {
-    const double exact = run.answer->exact(run.answer->at());
+    const double exact = run.answer->exact;
     std::vector<double> deviations;
     for (const double step : run.answer->steps) {
       if (events.interrupted()) throw Interrupted();
@@ -266,14 +255,13 @@ json answers_document(json context, const std::vector<AnswerRun>& plan,
   for (const AnswerRun& run : plan) {
     if (run.answer == std::exchange(last, run.answer)) continue;
     const KnownAnswer& answer = *run.answer;
-    const AnswerScene at = answer.at();
     answers.push_back({{"name", answer.name},
                        {"scene", answer.scene},
-                       {"scene_parameters", at.parameters},
+                       {"scene_parameters", answer.at().parameters},
                        {"quantity", answer.quantity},
                        {"source", answer.source},
                        {"strain_limit", answer.strain_limit},
-                       {"exact", answer.exact(at)},
+                       {"exact", answer.exact},
                        {"continuum", answer.continuum}});
   }
   for (const AnswerRow& row : outcome.rows) {
@@ -287,25 +275,23 @@ json answers_document(json context, const std::vector<AnswerRun>& plan,
 }
 
 void print_answers(std::ostream& out, const json& document) {
-  const auto text = [](const json& value, int digits) {
-    return value.is_number() ? number_text(value.get<double>(), digits) : std::string();
-  };
   for (const json& answer : document.at("answers")) {
     const auto word = [&answer](const char* key) { return answer.at(key).get<std::string>(); };
     out << '\n'
         << word("name") << " (" << word("scene") << "): " << word("quantity") << "\n  exact "
-        << text(answer.at("exact"), 6) << ", " << word("source") << '\n';
+        << number_text(answer.at("exact")) << ", " << word("source") << '\n';
     Table table{{}};
-    for (const json& row : document.at("rows")) {
-      if (row.at("answer") != answer.at("name")) continue;
+    for (const json& object : document.at("rows")) {
+      AnswerRow row;
+      read_fields(object, answer_row_fields, row);
+      if (row.answer != word("name")) continue;
       auto& cells = table.rows.emplace_back();
-      cells = {"  " + row.at("solver").get<std::string>(), "h = " + text(row.at("step"), 6)};
-      if (row.at("value").is_number()) {
-        const std::string order = text(row.at("order"), 2);
-        cells.insert(cells.end(),
-                     {text(row.at("value"), 6), order.empty() ? "" : "order " + order});
-      } else if (row.at("detail").is_string()) {
-        cells.push_back(row.at("detail"));
+      cells = {"  " + row.solver, "h = " + number_text(row.step)};
+      if (!std::isnan(row.value)) {
+        cells.push_back(number_text(row.value));
+        cells.push_back(std::isnan(row.order) ? "" : "order " + number_text(row.order, 2));
+      } else if (!row.detail.empty()) {
+        cells.push_back(row.detail);
       }
     }
     print_aligned(out, table);

@@ -87,7 +87,7 @@ const std::vector<List> lists{
          }),
     list("verbs", verbs, [](const Verb& verb) { return row_of(verb.name, verb.summary); }),
     list(
-        "cases", [] { return hard_cases(hard_case_values("paper")); },
+        "cases", [] { return hard_cases("paper"); },
         [](const HardCase& c) {
           return row_of(c.name, c.what, {{"row", c.row}});
         }),

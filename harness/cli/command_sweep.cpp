@@ -190,7 +190,7 @@ struct SweepCommand : SweepOptions, OutputOptions {
       const std::uint64_t first = seed < 0 ? 1 : static_cast<std::uint64_t>(seed);
       const auto outcome = run_stability(plan, first, journaled_events(journal, progress));
       return {stability_document(context, outcome, first, typed), outcome.complete,
-              outcome.nothing_new() ? success : unexpected_outcome};
+              outcome.counts().new_differences == 0 ? success : unexpected_outcome};
     };
     return carry_out(*this,
                      {profile + "-stability", context, {}, "matrix", "cells", run, add_cells_of});

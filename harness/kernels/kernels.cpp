@@ -44,7 +44,7 @@ using benchmark::Counter;
 
 // ---- What one core of this machine can do at best: the floors that kernels are held against ----
 
-// s of processor time, the shortest of several runs: other programs do not count.
+// s of processor time, the shortest of several runs, so that other programs do not count.
 template <class Work>
 double shortest(int rounds, Work work) {
   double best = HUGE_VAL;
@@ -97,7 +97,7 @@ double read_bandwidth(double bytes) {
   return rate = static_cast<double>(passes * size * sizeof(double)) / seconds;
 }
 
-// A product of dense matrices, which comes nearest to the peak; a fused multiply-add is two.
+// A product of dense matrices, which comes nearest to the peak; a fused multiply-add counts as two.
 struct Product {
   static constexpr int size = 256;
   static constexpr double flops = 2.0 * size * size * size;
@@ -141,7 +141,6 @@ const Moment& moment(const std::string& scene, int n) {
   while (steps < wanted && stepper->advance(m.state, m.h)) ++steps;
   if (steps < wanted)
     std::fprintf(stderr, "kernels: %s:%d: step %d was refused\n", scene.c_str(), n, steps + 1);
-  m.x0.resize(3, m.problem().vertices());
   WorkCounters work;
   unconstrained_step(m.problem(), m.state, m.h, m.x0, work);
   return m;
@@ -192,8 +191,8 @@ void vertex_pass(benchmark::State& state, bool collision, const std::string& sce
   if (collision) state.counters["contacts"] = average(static_cast<double>(work.contacts));
 }
 
-// One iteration of a solver as it is in a step: steps from one state, less those of `null`, over
-// their iterations. So it holds also what a solver does once a step, a last look at the edges, say.
+// One iteration of a solver within a step: the time of steps from one state, less that of `null`,
+// over their iterations. It includes what a solver does once per step, such as a last edge check.
 void iteration(benchmark::State& state, const std::string& name, const std::string& scene, int n) {
   const Moment& m = moment(scene, n);
   BackendOptions options{.strain_limit = 1e-4};  // so that there is something to do
@@ -233,8 +232,8 @@ std::unique_ptr<VelocityFilter> filter(const Problem& problem, const std::string
   return row.make_filter(problem, options, Along::edges);
 }
 
-// One pass over a cloth stretched by a fifth, so that every edge is corrected. A call that
-// may not pass at all costs the checks, the refusal and the clock: that is taken off.
+// One pass over a cloth stretched by a fifth, so that every edge is corrected. A call that may make
+// no pass costs the checks, the refusal and the clock: its time is subtracted.
 void strain_pass(benchmark::State& state, const std::string& method, int n) {
   const Moment& m = moment("drape", n);
   const auto one = filter(m.problem(), method, 1), none = filter(m.problem(), method, 0);
@@ -328,7 +327,7 @@ void whole_system(benchmark::State& state, const std::string& name, int n) {
   per_item(state, m.problem().constraints());
 }
 
-// The matrix of ICD's second iteration, about: with fast projection's first multipliers, negative
+// About the matrix of ICD's second iteration: with fast projection's first multipliers, negative
 // ones left out of H, so that there is one factorization. Factoring includes assembling; solving
 // includes refinement, or the conjugate gradients to ICD's own tolerance.
 void kkt(benchmark::State& state, const std::string& solver, bool solve, int n) {

@@ -3,76 +3,65 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <memory>
 
 namespace harness::cases {
 
 using inextensible::Positions;
 using inextensible::Problem;
 
-Mesh points(int n, double mass) {
-  Mesh mesh;
+Draft points(int n, double mass) {
+  Draft mesh(n, {{"gravity", g}, {"duration", 0}});
   mesh.parts.mass.assign(n, mass);
-  mesh.start.x.setZero(3, n);
-  mesh.start.v.setZero(3, n);
   return mesh;
 }
 
-void join(Mesh& mesh, int a, int b, double rest_length) {
-  mesh.parts.edges.push_back({a, b});
-  mesh.parts.rest_length.push_back(rest_length);
-}
-
-Mesh chain(int links, const Eigen::Vector3d& direction, bool pinned) {
-  const double l = 1.0 / links;
-  Mesh mesh = points(links + 1, 1.0 / (links + 1));
-  for (int i = 0; i <= links; ++i) {
-    mesh.start.x.col(i) = i * l * direction;
-    if (i > 0) join(mesh, i - 1, i, l);
-  }
+Draft chain(int links, const Eigen::Vector3d& direction, bool pinned) {
+  Draft mesh =
+      vertex_row({{"n", links + 1}, {"length", 1}, {"mass", 1}, {"gravity", g}, {"duration", 0}});
+  for (int i = 0; i <= links; ++i) mesh.scene.start.x.col(i) = i * (1.0 / links) * direction;
   if (pinned) mesh.parts.pinned = {0};
   return mesh;
 }
 
-Mesh cloth(int n, bool diagonals) {
+Draft cloth(int n, bool diagonals) {
   const double l = 1.0 / (n - 1);
-  Mesh mesh = points(n * n, 0.2 / (n * n));
+  Draft mesh = points(n * n, 0.2 / (n * n));
   const auto vertex = [n](int i, int j) { return i * n + j; };
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) {
-      mesh.start.x.col(vertex(i, j)) << j * l, 0, i * l;
-      if (j + 1 < n) join(mesh, vertex(i, j), vertex(i, j + 1), l);
-      if (i + 1 < n) join(mesh, vertex(i, j), vertex(i + 1, j), l);
+      mesh.scene.start.x.col(vertex(i, j)) << j * l, 0, i * l;
+      if (j + 1 < n) mesh.constrain(vertex(i, j), vertex(i, j + 1), l);
+      if (i + 1 < n) mesh.constrain(vertex(i, j), vertex(i + 1, j), l);
       if (diagonals && i + 1 < n && j + 1 < n)
-        join(mesh, vertex(i, j), vertex(i + 1, j + 1), std::sqrt(2.0) * l);
+        mesh.constrain(vertex(i, j), vertex(i + 1, j + 1), std::sqrt(2.0) * l);
     }
   }
   mesh.parts.pinned = {vertex(0, 0), vertex(0, n - 1)};
   return mesh;
 }
 
-Mesh hung_cloth(int n) {
-  Mesh mesh = cloth(n);
+Draft hung_cloth(int n) {
+  Draft mesh = cloth(n);
   mesh.parts.pinned = {0};
   return mesh;
 }
 
-Mesh midpoint_cloth(int n) {
-  const Mesh corners = cloth(n, true);
+Draft midpoint_cloth(int n) {
+  const Draft corners = cloth(n, true);
   std::map<std::pair<int, int>, int> midpoint_of;
   for (const auto [a, b] : corners.parts.edges)
     midpoint_of.emplace(std::minmax(a, b), static_cast<int>(midpoint_of.size()));
-  Mesh mesh = points(static_cast<int>(midpoint_of.size()), 0);
-  const Positions& x = corners.start.x;
+  Draft mesh = points(static_cast<int>(midpoint_of.size()), 0);
+  const Positions& x = corners.scene.start.x;
   for (const auto& [ends, v] : midpoint_of)
-    mesh.start.x.col(v) = 0.5 * (x.col(ends.first) + x.col(ends.second));
+    mesh.scene.start.x.col(v) = 0.5 * (x.col(ends.first) + x.col(ends.second));
   const double mass = 0.2 / (2 * (n - 1) * (n - 1));  // of a triangle
   const auto add = [&](std::array<int, 3> corner) {
     for (int i = 0; i < 3; ++i) {
       const int a = corner[i], b = corner[(i + 1) % 3], c = corner[(i + 2) % 3];
       const int first = midpoint_of.at(std::minmax(a, b)),
                 second = midpoint_of.at(std::minmax(a, c));
-      join(mesh, first, second, 0.5 * (x.col(b) - x.col(c)).norm());
+      mesh.constrain(first, second, 0.5 * (x.col(b) - x.col(c)).norm());
       mesh.parts.mass[first] += mass / 3;
     }
   };
@@ -100,11 +89,8 @@ Trial trial_of(Scene scene, double step, int steps, double strain_limit) {
   return trial;
 }
 
-Trial trial_of(Mesh mesh, double step, int steps, double strain_limit) {
-  Scene scene;
-  scene.start = std::move(mesh.start);
-  scene.problem = std::make_shared<const Problem>(std::move(mesh.parts));
-  return trial_of(std::move(scene), step, steps, strain_limit);
+Trial trial_of(Draft mesh, double step, int steps, double strain_limit) {
+  return trial_of(finished(std::move(mesh)), step, steps, strain_limit);
 }
 
 void add_noise(Positions& x, const std::vector<int>& pinned, double size, std::mt19937_64& random) {

@@ -63,7 +63,7 @@ Case case_of(std::string name, Scene scene, double h, int steps, double limit = 
           std::move(name)};
 }
 
-// All parts in a row, numbers with three digits.
+// All parts joined, numbers with three digits.
 template <class... Parts>
 std::string text(const Parts&... parts) {
   std::ostringstream stream;
@@ -89,11 +89,11 @@ Case net(std::uint64_t seed, int n, int pins, double speed, double step, int ste
   const auto uniform = [&random](double low, double high) {
     return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
   };
-  cases::Mesh mesh = cases::points(n * n, 0);
+  Draft mesh = cases::points(n * n, 0);
   mesh.parts.gravity.setZero();
-  Positions& x = mesh.start.x;
+  Positions& x = mesh.scene.start.x;
   const auto join = [&](int a, int b) {
-    if (a >= pins || b >= pins) cases::join(mesh, a, b, (x.col(b) - x.col(a)).norm());
+    if (a >= pins || b >= pins) mesh.constrain(a, b, (x.col(b) - x.col(a)).norm());
   };
   for (int v = 0; v < n * n; ++v) {
     const int row = v / n, column = v % n;
@@ -101,16 +101,13 @@ Case net(std::uint64_t seed, int n, int pins, double speed, double step, int ste
     mesh.parts.mass[v] = uniform(0.1, 1);
     if (v < pins) mesh.parts.pinned.push_back(v);
     for (int axis = 0; axis < 3 && v >= pins; ++axis)
-      mesh.start.v(axis, v) = uniform(-speed, speed);
+      mesh.scene.start.v(axis, v) = uniform(-speed, speed);
     if (column > 0) join(v - 1, v);
     if (row > 0) join(v, v - n);  // both orientations occur
   }
-  Scene scene;
-  scene.size = n;
-  scene.start = std::move(mesh.start);
-  scene.problem = std::make_shared<const Problem>(std::move(mesh.parts));
-  return case_of(text("net of ", n, " x ", n, ", seed ", seed), std::move(scene), step, steps,
-                 limit);
+  mesh.scene.size = n;
+  return case_of(text("net of ", n, " x ", n, ", seed ", seed), finished(std::move(mesh)), step,
+                 steps, limit);
 }
 
 // The drape without the parts that the solver does not take.
@@ -144,16 +141,16 @@ bool same_bits(const State& a, const State& b) {
 
 // ---- Pins, limit and counters of ordinary scenes at ordinary steps ----
 
-// What runs tell: how far they went, and where they first broke each promise.
+// The worst of several runs, and where each promise was first broken.
 struct Runs {
   std::int64_t steps = 0;
   double worst = 0;  // strain over limit
   double momentum_defect = 0;
   std::string stopped;
-  std::map<Promise, std::string> broken;  // where each was, first
+  std::map<Promise, std::string> broken;  // and where
 
   void take(const Examinee& solver, const Case& c) {
-    stepper_for(solver, c);  // or it is not taken
+    stepper_for(solver, c);  // throws NotTaken
     const TrialResult result =
         run_trial([&c] { return c; }, solver.backend.name, solver.options.seed);
     steps += result.work.steps;
@@ -209,13 +206,13 @@ Findings ordinary_runs(const Examinee& solver) {
 // with a limit near that strain, which edges are depends on the step, and the loss has no order in
 // it.
 constexpr double momentum_limit = 1e-5;
-// What edges may do within their limit has no order in the step: a hundredth of it is let pass.
+// What edges may do within their limit has no order in the step: a hundredth of it is tolerated.
 constexpr double spin_tolerance = 0.01 * momentum_limit;
 // Defect at a quarter of the step over this one: 1/4 for an error of first order in h, 1 for one
 // that steps do not lessen; between the two, on a logarithmic scale.
 constexpr double vanishing = 0.5;
 
-// Infinite if a step is refused.
+// Relative change of angular momentum over the run; infinite if a step is refused.
 double loss_of_spin(const Examinee& solver, const Case& c, int refinement) {
   const Problem& problem = *c.scene.problem;
   const auto stepper = stepper_for(solver, c);
@@ -302,10 +299,9 @@ Findings refusal(const Examinee& solver) {
 Findings permissible_candidate(const Examinee& solver) {
   const char* check = "permissible candidate";
   // A setting of this name means the same in every row (setting_fields.h), plug-ins' too.
-  for (const auto& setting : solver.backend.settings) {
-    if (setting.name == std::string("min_iterations") && std::get<double>(setting.initial) > 0)
-      return {not_applicable(check, "corrected too, by its setting min_iterations")};
-  }
+  inextensible::Settings defaults = complete_settings(solver.backend, {});
+  if (defaults.contains("min_iterations") && std::get<double>(defaults["min_iterations"]) > 0)
+    return {not_applicable(check, "corrected too, by its setting min_iterations")};
   if (!keeps_a_limit(solver.backend)) return {not_applicable(check, "no limit of its own")};
   double moved = 0, worst = 0, worst_candidate = 0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
@@ -380,9 +376,8 @@ Findings consistency(const Examinee& solver) {
   // How far a step is iterated is a tolerance, not a part of the formula: it must not be what
   // shows.
   inextensible::Settings settings;
-  for (const auto& info : solver.backend.settings) {
-    if (info.name == std::string("direction_tolerance")) settings[info.name] = 0.01;
-  }
+  if (complete_settings(solver.backend, {}).contains("direction_tolerance"))
+    settings["direction_tolerance"] = 0.01;
   std::vector<Positions> ends;
   for (const int refinement : {1, 2, 16}) {
     const auto stepper = stepper_for(solver, c, settings);
@@ -423,7 +418,7 @@ Findings all_hard_cases(const Examinee& solver) {
   const char* check = "hard cases";
   if (!solver.options.hard_cases) return {not_applicable(check, "left out")};
   if (!solver.backend.contestant) return {not_applicable(check, "for contestants only")};
-  const StabilityPlan plan{{solver.backend.name}, hard_cases(hard_case_values("quick"))};
+  const StabilityPlan plan{{solver.backend.name}, hard_cases("quick")};
   const StabilityOutcome outcome = run_stability(plan, solver.options.seed, {});
   std::map<Outcome, int> ended;
   std::string advice;
@@ -488,10 +483,6 @@ std::vector<Finding> examine(const std::string& solver, const ConformanceOptions
     }
   }
   return findings;
-}
-
-bool conforms(const std::vector<Finding>& findings) {
-  return std::ranges::count(findings, Grade::fail, &Finding::grade) == 0;
 }
 
 }  // namespace harness

@@ -28,6 +28,4 @@ struct ConformanceOptions {
 // registered. Throws Interrupted.
 std::vector<Finding> examine(const std::string& solver, const ConformanceOptions& options);
 
-bool conforms(const std::vector<Finding>& findings);  // no failure among them
-
 }  // namespace harness

@@ -74,11 +74,10 @@ void add_expectations(std::vector<HardCase>& cases) {
 }
 
 Expectation HardCase::expectation(const std::string& solver) const {
-  const Backend* backend = inextensible::find_backend(solver);
-  Expectation expected = *std::ranges::find_if(expectations, [&](const Expectation& e) {
-    return backend ? e.about(*backend) : e.solvers.empty();
-  });
-  if (backend && backend->strain_control == inextensible::StrainControl::time_step &&
+  const Backend& backend = *inextensible::find_backend(solver);
+  Expectation expected =
+      *std::ranges::find_if(expectations, [&](const Expectation& e) { return e.about(backend); });
+  if (backend.strain_control == inextensible::StrainControl::time_step &&
       expected.outcome == Outcome::refused && !expected.other)
     expected.other = {Outcome::survived, "no limit is promised, so that it need not be noticed"};
   return expected;

@@ -41,15 +41,10 @@ struct HardCase {
   Expectation expectation(const std::string& solver) const;
 };
 
-// Values that series of cases run over, by name: distances (from the singular positions Q1 to Q4),
-// limits (strain, of taut scenes), ratios (of masses), links (of long chains), sides (vertices
-// along large cloths), scales (of far starts).
-using HardCaseValues = std::map<std::string, std::vector<double>>;
-
-// profile: quick, default or paper, which differ in how large chains and cloths grow.
-HardCaseValues hard_case_values(const std::string& profile);
-// values: lists under all of these names.
-std::vector<HardCase> hard_cases(const HardCaseValues& values);
+// All hard cases of a profile (quick, default or paper).
+std::vector<HardCase> hard_cases(const std::string& profile);
+// The values that its series of cases run over, by the name of their list.
+std::map<std::string, std::vector<double>> hard_case_values(const std::string& profile);
 // Adds the expectations of configs/hard_cases.json that apply to each case.
 void add_expectations(std::vector<HardCase>& cases);
 // configs/hard_cases.json. Throws UsageError where it violates its schema.

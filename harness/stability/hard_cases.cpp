@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
 #include <random>
-#include <string_view>
 
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
@@ -29,11 +29,12 @@ constexpr double closest_point_energy = 3;
 
 // A power of two, so that the candidates on the singular positions are reached exactly.
 constexpr double q_step = 1.0 / 128;
-constexpr double q_limit = 5e-7;  // between two of the distances that hard_case_values() has
+constexpr double q_limit =
+    5e-7;  // between two of the distances of the series "Q1 near" to "Q4 near"
 
-Trial one_step(Mesh mesh, const Positions& candidate) {
+Trial one_step(Draft mesh, const Positions& candidate) {
   mesh.parts.gravity.setZero();
-  mesh.start.v = (candidate - mesh.start.x) / q_step;
+  mesh.scene.start.v = (candidate - mesh.scene.start.x) / q_step;
   Trial trial = trial_of(std::move(mesh), q_step, 1, q_limit);
   trial.stiffness = 1e6;
   trial.energy_tolerance = closest_point_energy;
@@ -43,11 +44,11 @@ Trial one_step(Mesh mesh, const Positions& candidate) {
 
 // An edge of 1 m along x, pinned at the origin; its free end goes to (x, y).
 Trial one_edge(double x, double y) {
-  Mesh mesh = points(2, 1);
-  mesh.start.x(0, 1) = 1;
+  Draft mesh = points(2, 1);
+  mesh.scene.start.x(0, 1) = 1;
   mesh.parts.pinned = {0};
-  join(mesh, 0, 1, 1);
-  Positions candidate = mesh.start.x;
+  mesh.constrain(0, 1, 1);
+  Positions candidate = mesh.scene.start.x;
   candidate.col(1) << x, y, 0;
   return one_step(std::move(mesh), candidate);
 }
@@ -55,23 +56,19 @@ Trial one_edge(double x, double y) {
 // Two edges of 1 m from pins at (-half_span, 0) and (half_span, 0) to a vertex between them that
 // goes from (0, y) to (0, candidate_y).
 Trial two_edges(double half_span, double y, double candidate_y) {
-  Mesh mesh = points(3, 1);
-  mesh.start.x.col(0) << -half_span, 0, 0;
-  mesh.start.x.col(1) << 0, y, 0;
-  mesh.start.x.col(2) << half_span, 0, 0;
+  Draft mesh = points(3, 1);
+  mesh.scene.start.x.col(0) << -half_span, 0, 0;
+  mesh.scene.start.x.col(1) << 0, y, 0;
+  mesh.scene.start.x.col(2) << half_span, 0, 0;
   mesh.parts.pinned = {0, 2};
-  join(mesh, 0, 1, 1);
-  join(mesh, 1, 2, 1);
-  Positions candidate = mesh.start.x;
+  mesh.constrain(0, 1, 1);
+  mesh.constrain(1, 2, 1);
+  Positions candidate = mesh.scene.start.x;
   candidate(1, 1) = candidate_y;
   return one_step(std::move(mesh), candidate);
 }
 
 // ---- Rows at full length between pins, and constraints that cannot be met ----
-
-Scene row_of_links(double stretch) {
-  return built_scene("taut_row", {{"stretch", stretch}, {"duration", 0.5}});
-}
 
 // A row of 1 m that is strained by s sags by sqrt(3 s / 8) m.
 Trial taut(Trial trial) {
@@ -80,37 +77,37 @@ Trial taut(Trial trial) {
 }
 
 Trial duplicate_edge(double /*value*/) {
-  Mesh mesh = chain(1);
-  join(mesh, 0, 1, 1.1);
+  Draft mesh = chain(1);
+  mesh.constrain(0, 1, 1.1);
   return trial_of(std::move(mesh), 0.01, 3);
 }
 
 // ---- Collapsed and degenerate starts ----
 
 Trial coincident(double /*value*/) {
-  Mesh mesh = chain(3, along, false);
-  mesh.start.x.col(2) = mesh.start.x.col(1);
-  mesh.start.x.col(3) = mesh.start.x.col(1) + Eigen::Vector3d(1.0 / 3, 0, 0);
+  Draft mesh = chain(3, along, false);
+  mesh.scene.start.x.col(2) = mesh.scene.start.x.col(1);
+  mesh.scene.start.x.col(3) = mesh.scene.start.x.col(1) + Eigen::Vector3d(1.0 / 3, 0, 0);
   return trial_of(std::move(mesh), 0.01, 3);
 }
 
 Trial folded(double /*value*/) {
-  Mesh mesh = chain(20);
-  for (int i = 0; i <= 20; ++i) mesh.start.x.col(i) << 0.05 * (i % 2), 0, 0;
+  Draft mesh = chain(20);
+  for (int i = 0; i <= 20; ++i) mesh.scene.start.x.col(i) << 0.05 * (i % 2), 0, 0;
   return trial_of(std::move(mesh), 1.0 / 400, 200);
 }
 
 // ---- Masses of unlike vertices ----
 
 Trial heavy_end(double ratio) {
-  Mesh mesh = chain(20);
+  Draft mesh = chain(20);
   mesh.parts.mass.back() *= ratio;
   return trial_of(std::move(mesh), 1.0 / 400, 40);
 }
 
-// Three swings of the same from horizontal, in the steps of a game.
+// The same kind of chain swings three times from horizontal, at the step of a game.
 Trial heavy_swing(double /*value*/) {
-  Mesh mesh = chain(20);
+  Draft mesh = chain(20);
   mesh.parts.mass.back() *= 100;
   Trial trial = trial_of(std::move(mesh), 1.0 / 60, 180);
   trial.stiffness = 1e5;
@@ -119,7 +116,7 @@ Trial heavy_swing(double /*value*/) {
 }
 
 Trial light_between(double ratio) {
-  Mesh mesh = chain(20);
+  Draft mesh = chain(20);
   for (std::size_t i = 1; i < 20; i += 2) mesh.parts.mass[i] /= ratio;
   Trial trial = trial_of(std::move(mesh), 1.0 / 400, 40);
   trial.slack = std::sqrt(3 * trial.strain_limit / 8) * 0.1;  // two links between heavy ends
@@ -127,7 +124,7 @@ Trial light_between(double ratio) {
 }
 
 Trial heavy_patch(double ratio) {
-  Mesh mesh = hung_cloth(11);
+  Draft mesh = hung_cloth(11);
   for (int i = 4; i < 7; ++i)
     for (int j = 4; j < 7; ++j) mesh.parts.mass[11 * i + j] *= ratio;
   return trial_of(std::move(mesh), 1.0 / 400, 40);
@@ -135,30 +132,30 @@ Trial heavy_patch(double ratio) {
 
 // ---- Large rotations and velocities in one step ----
 
-// Hangs down by half of its length and goes up again.
+// The chain hangs down for half of its length and comes up again.
 Trial crack(double /*value*/) {
-  Mesh mesh = chain(40);
+  Draft mesh = chain(40);
   const double gap = 1e-3;
   for (int i = 0; i <= 40; ++i)
-    mesh.start.x.col(i) << (i > 20 ? gap * 20 : gap * i), -(i > 20 ? 40 - i : i) / 40.0, 0;
+    mesh.scene.start.x.col(i) << (i > 20 ? gap * 20 : gap * i), -(i > 20 ? 40 - i : i) / 40.0, 0;
   for (std::size_t k = 0; k < 40; ++k) {
     const auto e = static_cast<Eigen::Index>(k);
-    mesh.parts.rest_length[k] = (mesh.start.x.col(e + 1) - mesh.start.x.col(e)).norm();
+    mesh.parts.rest_length[k] = (mesh.scene.start.x.col(e + 1) - mesh.scene.start.x.col(e)).norm();
   }
   return trial_of(std::move(mesh), 1.0 / 800, 400);
 }
 
 Trial spin(double /*value*/) {
-  Mesh mesh = chain(20, along, false);
+  Draft mesh = chain(20, along, false);
   mesh.parts.gravity.setZero();
-  for (int i = 0; i <= 20; ++i) mesh.start.v(1, i) = 100 * (i / 20.0 - 0.5);
+  for (int i = 0; i <= 20; ++i) mesh.scene.start.v(1, i) = 100 * (i / 20.0 - 0.5);
   return trial_of(std::move(mesh), 1e-3, 200);
 }
 
 Trial hit(double /*value*/) {
-  Mesh mesh = cloth(15);
+  Draft mesh = cloth(15);
   mesh.parts.pinned.clear();
-  mesh.start.v(1, 7 * 15 + 7) = 100;
+  mesh.scene.start.v(1, 7 * 15 + 7) = 100;
   Trial trial = trial_of(std::move(mesh), 1e-3, 100);
   trial.energy_tolerance = closest_point_energy;
   return trial;
@@ -174,9 +171,9 @@ Trial jump(double /*value*/) {
 
 // ---- Long chains and large cloths ----
 
-// Ten steps, with a budget of edge visits that passes may spend on a step, and of iterations of
+// Ten steps, with a budget of edge visits for methods that work in passes, and of iterations for
 // projections.
-Trial with_budget(Mesh mesh) {
+Trial with_budget(Draft mesh) {
   Trial trial = trial_of(std::move(mesh), 1.0 / 400, 10);
   const double passes = std::max(100.0, 2e8 / trial.scene.problem->constraints());
   for (const auto& backend : inextensible::backends()) {
@@ -208,21 +205,21 @@ Trial on_a_ball(const char* parameter, double value, double speed = 0, double de
 // ---- Starts far from the manifold, and whether errors pile up over steps ----
 
 Trial scaled(double scale) {
-  Mesh mesh = chain(20);
-  mesh.start.x *= scale;
+  Draft mesh = chain(20);
+  mesh.scene.start.x *= scale;
   Trial trial = trial_of(std::move(mesh), 1.0 / 100, 20);
   trial.energy_tolerance = closest_point_energy;  // the release moves vertices by many edges a step
   return trial;
 }
 
 Trial noise(double /*value*/) {
-  Mesh mesh = hung_cloth(11);
+  Draft mesh = hung_cloth(11);
   std::mt19937_64 random(7);
-  add_noise(mesh.start.x, mesh.parts.pinned, 0.03, random);
+  add_noise(mesh.scene.start.x, mesh.parts.pinned, 0.03, random);
   return trial_of(std::move(mesh), 1.0 / 100, 20);
 }
 
-Trial ten_seconds(Mesh mesh) { return trial_of(std::move(mesh), 1.0 / 100, 1000); }
+Trial ten_seconds(Draft mesh) { return trial_of(std::move(mesh), 1.0 / 100, 1000); }
 
 Trial with_noise_every_step(Trial trial) {
   trial.disturb = [random = std::make_shared<std::mt19937_64>(7)](State& state, int) {
@@ -234,16 +231,15 @@ Trial with_noise_every_step(Trial trial) {
 // ---- All of them ----
 
 // How cases are built: one by its name, a series by its row, with a value of its list.
-struct Builder {
-  std::string_view name;
-  Trial (*build)(double value);
-};
-constexpr Builder builders[] = {
+const std::map<std::string, Trial (*)(double value)> builders{
     {"Q1", [](double) { return one_edge(0, 2); }},
     {"Q2", [](double) { return one_edge(0, 0.5); }},
     {"Q3", [](double) { return two_edges(0.6, 0.8, 0); }},
     {"Q4", [](double) { return two_edges(1, 0, 0.01); }},
-    {"infeasible/row", [](double) { return trial_of(row_of_links(1.2), 1.0 / 100, 3); }},
+    {"infeasible/row",
+     [](double) {
+       return trial_of(built_scene("taut_row", {{"stretch", 1.2}}), 1.0 / 100, 3);
+     }},
     {"infeasible/duplicate", duplicate_edge},
     {"triangles", [](double) { return taut(trial_of(cloth(9, true), 1.0 / 400, 100)); }},
     {"triangles/midpoints",
@@ -270,7 +266,10 @@ constexpr Builder builders[] = {
     {"Q2 near", [](double d) { return one_edge(d, 0.5); }},
     {"Q3 near", [](double d) { return two_edges(0.6, 0.8, 0.8 * d); }},
     {"Q4 near", [](double d) { return two_edges(std::sqrt(1 - d * d), d, d + 0.01); }},
-    {"taut row", [](double limit) { return taut(trial_of(row_of_links(1), 1.0 / 200, 0, limit)); }},
+    {"taut row",
+     [](double limit) {
+       return taut(trial_of(built_scene("taut_row", {{"duration", 0.5}}), 1.0 / 200, 0, limit));
+     }},
     {"1 m patch",
      [](double limit) {
        return taut(
@@ -285,58 +284,46 @@ constexpr Builder builders[] = {
     {"far start", scaled},
 };
 
-// Numbers that are none, or impossible ones: refused at the door.
+// Numbers that are not finite or are physically impossible: refused at the door.
 struct Impossible {
   const char* what;
-  bool state;  // any number but NaN and infinity would be possible
-  void (*put)(Mesh&, double);
+  bool state;  // of a state, where any finite number is possible
+  void (*put)(Draft&, double);
 };
 constexpr Impossible impossible_numbers[] = {
-    {"position", true, [](Mesh& m, double v) { m.start.x(1, 2) = v; }},
-    {"velocity", true, [](Mesh& m, double v) { m.start.v(0, 3) = v; }},
-    {"mass", false, [](Mesh& m, double v) { m.parts.mass[2] = v; }},
-    {"length", false, [](Mesh& m, double v) { m.parts.rest_length[1] = v; }},
+    {"position", true, [](Draft& m, double v) { m.scene.start.x(1, 2) = v; }},
+    {"velocity", true, [](Draft& m, double v) { m.scene.start.v(0, 3) = v; }},
+    {"mass", false, [](Draft& m, double v) { m.parts.mass[2] = v; }},
+    {"length", false, [](Draft& m, double v) { m.parts.rest_length[1] = v; }},
 };
 
 }  // namespace
 
-HardCaseValues hard_case_values(const std::string& profile) {
-  HardCaseValues values{{"distances", {1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12}},
-                        {"limits", {0.01, 0.001}},
-                        {"ratios", {1e2, 1e4, 1e6, 1e8}},
-                        {"links", {10, 100, 1000}},
-                        {"sides", {21}},
-                        {"scales", {1.5, 0.5}}};
-  if (profile != "quick") {
-    values["links"] = {10, 100, 1000, 10000, 100000};
-    values["sides"] = {21, 51};
-  }
-  if (profile == "paper") values["sides"] = {21, 51, 101, 201};
-  return values;
+std::map<std::string, std::vector<double>> hard_case_values(const std::string& profile) {
+  return hard_cases_document().at("values").at(profile);
 }
 
-std::vector<HardCase> hard_cases(const HardCaseValues& values) {
+std::vector<HardCase> hard_cases(const std::string& profile) {
+  const auto values = hard_case_values(profile);
   std::vector<HardCase> all;
   for (const nlohmann::json& entry : hard_cases_document().at("cases")) {
     const std::string name = entry.at("name"), row = entry.at("row"), what = entry.at("what"),
                       over = entry.value("over", ""), key = over.empty() ? name : row;
-    const auto found = std::ranges::find(builders, key, &Builder::name);
-    if (found == std::end(builders))
+    const auto found = builders.find(key);
+    if (found == builders.end())
       throw UsageError("hard cases: nothing in harness/stability/hard_cases.cpp builds '" + key +
                        "'");
-    const auto build_at = [build = found->build](double value) {
-      return [build, value] { return build(value); };
-    };
-    if (over.empty()) all.push_back({row, name, what, build_at(unknown)});
-    for (const double value : over.empty() ? std::vector<double>() : values.at(over))
-      all.push_back({row, name + "/" + number_text(value), what, build_at(value), value});
+    for (const double value : over.empty() ? std::vector{unknown} : values.at(over)) {
+      all.push_back({row, over.empty() ? name : name + "/" + number_text(value), what,
+                     [build = found->second, value] { return build(value); }, value});
+    }
   }
   for (const auto& [what, state, put] : impossible_numbers) {
     for (const double value : {std::numeric_limits<double>::quiet_NaN(), HUGE_VAL, 0.0, -1.0}) {
       if (state && std::isfinite(value)) continue;
       const std::string name = std::string(what) + " " + number_text(value);
       all.push_back({"not a number", "door/" + name, name + " of a vertex or edge", [=, put = put] {
-                       Mesh mesh = chain(4);
+                       Draft mesh = chain(4);
                        put(mesh, value);
                        return trial_of(std::move(mesh), 0.01, 3);
                      }});

@@ -57,13 +57,13 @@ LargestStep largest_step(const StabilityScene& scene, const std::string& solver,
 namespace {
 
 // Rank of the Jacobian of | d |^2 / l over all coordinates.
-int rank_of_jacobian(const cases::Mesh& mesh, int constraints, int coordinates) {
+int rank_of_jacobian(const Draft& mesh, int constraints, int coordinates) {
   std::vector<Eigen::Triplet<double>> entries;
   for (int k = 0; k < constraints; ++k) {
     const auto e = static_cast<std::size_t>(k);
     const auto [a, b] = mesh.parts.edges[e];
     const Eigen::Vector3d u =
-        2 * (mesh.start.x.col(b) - mesh.start.x.col(a)) / mesh.parts.rest_length[e];
+        2 * (mesh.scene.start.x.col(b) - mesh.scene.start.x.col(a)) / mesh.parts.rest_length[e];
     for (int axis = 0; axis < 3; ++axis) {
       entries.emplace_back(k, 3 * a + axis, -u[axis]);
       entries.emplace_back(k, 3 * b + axis, u[axis]);
@@ -82,7 +82,7 @@ std::vector<Freedom> degrees_of_freedom(int n) {
                             {"triangles", cases::cloth(n, true)},
                             {"midpoints", cases::midpoint_cloth(n)}}) {
     std::mt19937_64 random(1);
-    cases::add_noise(mesh.start.x, {}, 0.2 / (n - 1), random);
+    cases::add_noise(mesh.scene.start.x, {}, 0.2 / (n - 1), random);
     const auto edges = static_cast<int>(mesh.parts.edges.size()),
                coordinates = static_cast<int>(3 * mesh.parts.mass.size());
     const int rank = rank_of_jacobian(mesh, edges, coordinates);
@@ -93,33 +93,21 @@ std::vector<Freedom> degrees_of_freedom(int n) {
 
 // ---- The same frames ----
 
-namespace {
-
-using inextensible::State;
-
-// Every step until shortly after first contact, which is early, then at the sample times of
-// references.
-constexpr double densely_until = 0.05;  // s
-
-void add_distance(const Scene& scene, const State& a, const State& b, FrameDistances& series) {
-  series.rms.push_back(rms_distance(scene, a.x, b.x));
-  series.largest.push_back(max_distance(scene, a.x, b.x));
-}
-
-}  // namespace
-
 std::string SameFrameScene::name() const {
   return scene + " " + std::to_string(side) + " x " + std::to_string(side) + ", strain limit " +
          number_text(strain_limit);
 }
 
+// Compares every step until shortly after first contact, which is early, then at the sample times
+// of references.
 SameFrame same_frame(const SameFrameScene& wanted, std::uint64_t seed) {
+  constexpr double densely_until = 0.05;  // s
   const Scene scene = built_scene(wanted.scene, {{"n", wanted.side}});
   SameFrame found{.scene = wanted};
   struct Run {
     const char* solver;
     std::unique_ptr<inextensible::Stepper> stepper;
-    State state;
+    inextensible::State state;
   };
   std::vector<Run> runs;
   for (const char* solver : {"fast_projection", "icd", "fast_projection"})
@@ -128,6 +116,10 @@ SameFrame same_frame(const SameFrameScene& wanted, std::uint64_t seed) {
          scene.start});
   std::mt19937_64 random(seed);
   cases::add_noise(runs[2].state.x, scene.problem->pinned(), wanted.moved * scene.size, random);
+  const auto add_distance = [&](const Run& other, FrameDistances& series) {
+    series.rms.push_back(rms_distance(scene, runs[0].state.x, other.state.x));
+    series.largest.push_back(max_distance(scene, runs[0].state.x, other.state.x));
+  };
   const long steps = std::lround(scene.duration / SameFrameScene::step);
   for (long i = 1; i <= steps; ++i) {
     for (Run& run : runs) {
@@ -142,8 +134,8 @@ SameFrame same_frame(const SameFrameScene& wanted, std::uint64_t seed) {
       found.first_contact = time;
     if (time > densely_until && std::abs(std::remainder(time, sample_interval)) > 1e-9) continue;
     found.times.push_back(time);
-    add_distance(scene, runs[0].state, runs[1].state, found.icd);
-    add_distance(scene, runs[0].state, runs[2].state, found.moved_start);
+    add_distance(runs[1], found.icd);
+    add_distance(runs[2], found.moved_start);
   }
   return found;
 }

@@ -40,7 +40,7 @@ ExpectationCounts StabilityOutcome::counts() const {
 
 StabilityPlan plan_stability(const std::string& profile, const std::optional<Pattern>& solver,
                              const std::optional<Pattern>& hard_case) {
-  StabilityPlan plan{{}, hard_cases(hard_case_values(profile))};
+  StabilityPlan plan{{}, hard_cases(profile)};
   for (const auto& backend : inextensible::backends()) {
     if (backend.contestant && (!solver || matches(*solver, backend.name)))
       plan.solvers.emplace_back(backend.name);

@@ -24,7 +24,7 @@ struct StabilityCell {
   TrialResult result;
   Expectation expectation;
   bool expected = true;                    // the outcome is the expected one, or admitted beside it
-  const KnownDifference* known = nullptr;  // of one that is not expected
+  const KnownDifference* known = nullptr;  // of an outcome that is not expected
 };
 
 // Whether theory admits the outcome. It knows nothing of solvers from outside: where others
@@ -81,7 +81,7 @@ struct SameFrameScene {
   std::string name() const;
 };
 
-// How far frames are apart, over the scene's size, at the times of frames.
+// How far apart frames are, over the scene's size, at their times.
 struct FrameDistances {
   std::vector<double> rms, largest;  // root mean square over vertices by mass; any vertex
 };
@@ -124,8 +124,6 @@ struct StabilityOutcome {
   bool complete = true;  // false: interrupted
 
   ExpectationCounts counts() const;
-  // Nothing differs from what theory expects but what known_differences() lists.
-  bool nothing_new() const { return counts().new_differences == 0; }
 };
 
 // The key of a cell's result.

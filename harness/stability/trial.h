@@ -112,10 +112,9 @@ inline constexpr std::tuple trial_fields{
 nlohmann::json to_json(const TrialResult& result);
 TrialResult trial_result_of(const nlohmann::json& object);
 
-// The checks of one run, step after step: the harness's word against the solver's.
-//
-// Disturbs the steps of a drive, judges them, and raises the figures of a result. Stops where a
-// step decides the outcome (`wrong` or `diverged`, with the reason in the result's detail).
+// The checks of one run, step after step: the harness's word against the solver's. Disturbs the
+// steps of a drive, judges them, and raises the figures of a result. Stops where a step decides the
+// outcome (`wrong` or `diverged`, with the reason in the result's detail).
 class TrialJudge : public Observer {
  public:
   // All must outlive this.

@@ -139,7 +139,7 @@ TEST(Isolation, AnInterruptEndsTheChildAtOnceAndNoOtherIsMade) {
 }
 
 TEST(Isolation, ATrialThatCrashesIsAnOutcomeAndOthersComeBackWhole) {
-  const auto cases = hard_cases(hard_case_values("quick"));
+  const auto cases = hard_cases("quick");
   nlohmann::json here = to_json(run_trial(cases.front().build, "fast_projection", 1)),
                  there = to_json(run_isolated_trial(cases.front().build, "fast_projection", 1));
   for (nlohmann::json* result : {&here, &there}) result->erase("seconds");

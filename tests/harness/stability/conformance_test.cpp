@@ -125,8 +125,10 @@ std::unique_ptr<Stepper> over_relaxed(std::shared_ptr<const Problem> problem,
   return make_stepper("gauss_seidel", std::move(problem), options);
 }
 
-std::set<std::string> failed_checks(const std::string& solver, bool hard_cases = false) {
-  std::set<std::string> failed;
+using Checks = std::set<std::string>;
+
+Checks failed_checks(const std::string& solver, bool hard_cases = false) {
+  Checks failed;
   for (const Finding& finding : examine(solver, {1, hard_cases})) {
     if (finding.grade != Finding::Grade::fail) continue;
     failed.insert(finding.check);
@@ -147,8 +149,6 @@ class BrokenSolvers : public ::testing::Test {
     add_backends(rows);
   }
 };
-
-using Checks = std::set<std::string>;
 
 TEST_F(BrokenSolvers, FailTheCheckThatIsMeantForThemAndNoOther) {
   if (testing::sanitized) GTEST_SKIP() << "too slow with sanitizers";
@@ -186,15 +186,9 @@ TEST_P(BuiltInSolvers, Conform) {
   EXPECT_EQ(failed_checks(GetParam(), true), Checks{});
 }
 
-std::vector<const char*> built_in() {
-  std::vector<const char*> names;
-  for (const Backend& backend : backends()) {
-    if (is_built_in(backend.name)) names.push_back(backend.name);
-  }
-  return names;
-}
-
-INSTANTIATE_TEST_SUITE_P(All, BuiltInSolvers, ::testing::ValuesIn(built_in()),
+INSTANTIATE_TEST_SUITE_P(All, BuiltInSolvers, ::testing::ValuesIn(names::rows_that([](auto& row) {
+                           return is_built_in(row.name);
+                         })),
                          names::contestant_name);
 
 }  // namespace
