@@ -37,8 +37,7 @@ std::vector<std::size_t> ladder_order(const std::vector<PointResult>& screened);
 // samples of the fastest runs. A run in progress is stopped when the time is over. Throws
 // Interrupted if limits.interrupted() says so, whatever has been found.
 Trials try_contestants(const Suite& suite, const std::vector<Search>& searches, const Wish& wish,
-                       const ChooseLimits& limits, const SweepEvents& events,
-                       const SweepRunners& runners);
+                       const ChooseLimits& limits, const SweepEvents& events, const Runner& run);
 
 struct Pick {
   const PointResult* point = nullptr;

@@ -177,7 +177,7 @@ void add_sample(PointResult& more, const RunLimits& limits) {
   append(sampler.taken, more);
 }
 
-void look(PointResult& point, const RunLimits& limits, std::optional<double> guess) {
+void look(PointResult& point, const RunLimits& limits) {
   const PointSpec& spec = point.spec;
   using inextensible::StrainControl;
   const PointRunner runner(spec, limits);
@@ -185,7 +185,8 @@ void look(PointResult& point, const RunLimits& limits, std::optional<double> gue
   inextensible::Settings settings = spec.settings;
   const bool springs = control == StrainControl::stiffness && !settings.contains("stiffness");
   if (springs)
-    settings["stiffness"] = guess.value_or(first_stiffness(runner.scene(), spec.strain_limit));
+    settings["stiffness"] =
+        limits.stiffness_guess.value_or(first_stiffness(runner.scene(), spec.strain_limit));
   const Run run = runner.run(settings, true, std::numeric_limits<double>::infinity());
   const auto steps = static_cast<double>(run.stepper->work().steps);
   // The first step sets up what the others use.
@@ -205,29 +206,29 @@ void look(PointResult& point, const RunLimits& limits, std::optional<double> gue
   }
 }
 
-void run_whole(PointResult& point, const RunLimits& limits, std::optional<double> guess) {
+void run_whole(PointResult& point, const RunLimits& limits) {
   PointRunner runner(point.spec, limits);
   point.steps_planned = runner.steps();
   inextensible::Settings settings = point.spec.settings;
   const bool needs_stiffness =
       runner.backend().strain_control == inextensible::StrainControl::stiffness &&
       !settings.contains("stiffness");
-  if (!needs_stiffness || calibrate(point, runner, settings, guess))
+  if (!needs_stiffness || calibrate(point, runner, settings, limits.stiffness_guess))
     measure(point, runner, settings, limits);
 }
 
 }  // namespace
 
-PointResult run_point(const PointSpec& spec, const RunLimits& limits, std::optional<double> guess) {
+PointResult run_point(const PointSpec& spec, const RunLimits& limits) {
   PointResult point(spec);
   reset_peak_rss();
   try {
     if (limits.sample_of) {
       add_sample(point, limits);
     } else if (limits.look) {
-      look(point, limits, guess);
+      look(point, limits);
     } else {
-      run_whole(point, limits, guess);
+      run_whole(point, limits);
     }
   } catch (const std::bad_alloc&) {
     point.status = PointStatus::out_of_memory;

@@ -30,10 +30,11 @@ struct RunLimits {
   double hopeless = 1e300;
   std::function<bool()> interrupted = nullptr;            // asked after every step
   std::shared_ptr<ReferenceFolder> references = nullptr;  // null: no errors against references
-  const Scene* scene = nullptr;    // the spec's, where it has been built already
-  Heartbeat* heartbeat = nullptr;  // notified of every step; see child_process.h
-  int most_retaken = 3;            // times that a sample may be taken again
-  bool timed = true;               // false: times are not used, and one run is a sample
+  const Scene* scene = nullptr;                // the spec's, where it has been built already
+  std::optional<double> stiffness_guess = {};  // N; where a calibration begins, if one is needed
+  Heartbeat* heartbeat = nullptr;              // notified of every step; see child_process.h
+  int most_retaken = 3;                        // times that a sample may be taken again
+  bool timed = true;                           // false: times are not used, and one run is a sample
   // If it is not null, all that is wanted is one sample more of this point: the judge stays out.
   const PointResult* sample_of = nullptr;
   // true: only steps for about `hopeless` seconds. The point's one sample is their time, where one
@@ -45,9 +46,8 @@ struct RunLimits {
 // One judged run, and a first sample of its time; or only a sample more, or a look. A
 // sample is the mean time of as many runs as take least_sample together; it is taken again where
 // the machine was disturbed (machine_noise.h), unless it takes longer than longest_retaken. There
-// is none where the run failed. guess: a stiffness to begin calibration from, where one is needed.
-// Throws Interrupted, and nothing else: whatever goes wrong is the point's status.
-PointResult run_point(const PointSpec& spec, const RunLimits& limits,
-                      std::optional<double> guess = {});
+// is none where the run failed. Throws Interrupted, and nothing else: whatever goes wrong is the
+// point's status.
+PointResult run_point(const PointSpec& spec, const RunLimits& limits);
 
 }  // namespace harness

@@ -84,7 +84,7 @@ struct Sweep {
   const Suite& suite;
   const std::vector<Search>& searches;
   const SweepEvents& events;
-  const SweepRunners& runners;
+  const Runner& run;
   std::vector<PointResult>& points;
   std::vector<Choice> choices = {};
   // The fastest run at each place so far whose motion is right to the headline's error, as far as
@@ -114,7 +114,7 @@ struct Sweep {
   }
 
   void repeat(PointResult& point) {
-    runners.add_sample(point, {.timeout = suite.timeout, .interrupted = events.interrupted});
+    add_sample(point, run, {.timeout = suite.timeout, .interrupted = events.interrupted});
   }
 
   void find_best(std::size_t search, Neighbour& neighbour);
@@ -172,7 +172,7 @@ void Sweep::find_best(std::size_t number, Neighbour& neighbour) {
   std::map<std::size_t, std::size_t> place_of_rung;
   // Stopped for others' sake: at a neighbouring limit it may be nearer to them.
   bool was_far_behind = false;
-  const auto run = [&](std::size_t rung, double longest_useful) -> const PointResult& {
+  const auto try_rung = [&](std::size_t rung, double longest_useful) -> const PointResult& {
     if (const auto known = place_of_rung.find(rung); known != place_of_rung.end())
       return points[known->second];
     PointSpec spec = search.base;
@@ -184,9 +184,10 @@ void Sweep::find_best(std::size_t number, Neighbour& neighbour) {
         std::isinf(useful)
             ? 1e300
             : std::max(hopeless_least, useful * spec.scene_parameters.at("duration"));
-    PointResult point =
-        runners.run(spec, {suite.timeout, hopeless, events.interrupted, runners.references},
-                    neighbour.guess_of_stiffness(spec));
+    PointResult point = run(spec, {.timeout = suite.timeout,
+                                   .hopeless = hopeless,
+                                   .interrupted = events.interrupted,
+                                   .stiffness_guess = neighbour.guess_of_stiffness(spec)});
     if (point.stiffness)
       neighbour.stiffness_times_limit[spec.step] = *point.stiffness * spec.strain_limit;
     was_far_behind = was_far_behind || (point.status == PointStatus::timeout && useful == behind &&
@@ -202,7 +203,7 @@ void Sweep::find_best(std::size_t number, Neighbour& neighbour) {
     return point;
   };
   const BestSteps found =
-      find_best_steps({search.ladder.size(), run, again, levels_of(suite), search.stride,
+      find_best_steps({search.ladder.size(), try_rung, again, levels_of(suite), search.stride,
                        neighbour.rung_in(search.ladder), search.every_step});
   if (!found.best) {
     neighbour.hopeless = found.timed_out && !was_far_behind;
@@ -223,9 +224,9 @@ void Sweep::find_best(std::size_t number, Neighbour& neighbour) {
 }  // namespace
 
 SweepOutcome run_sweep(const Suite& suite, const std::vector<Search>& searches,
-                       const SweepEvents& events, const SweepRunners& runners) {
+                       const SweepEvents& events, const Runner& run) {
   SweepOutcome outcome;
-  Sweep sweep{suite, searches, events, runners, outcome.points};
+  Sweep sweep{suite, searches, events, run, outcome.points};
   std::map<std::size_t, Neighbour> neighbours;
   try {
     for (std::size_t s = 0; s < searches.size(); ++s) {

@@ -69,6 +69,6 @@ struct SweepOutcome {
 };
 
 SweepOutcome run_sweep(const Suite& suite, const std::vector<Search>& searches,
-                       const SweepEvents& events, const SweepRunners& runners = {});
+                       const SweepEvents& events, const Runner& run = run_point);
 
 }  // namespace harness

@@ -74,7 +74,7 @@ struct Found {
 struct Tuner {
   const SweepSpec& scene;  // one size and limit
   const TuneOptions& options;
-  const SweepRunners& runners;
+  const Runner& run_one;
   const std::vector<TunedNumber>& numbers;
   Values initial;  // what the search begins with, and must better
   Search search = {};
@@ -131,15 +131,17 @@ struct Tuner {
     what.step = search.ladder[rung];
     what.settings = settings;
     const double hopeless = std::max(0.05, most_seconds * duration());
-    PointResult point = runners.run(
-        what, {options.timeout, hopeless, options.interrupted, runners.references}, stiffness);
+    PointResult point = run_one(what, {.timeout = options.timeout,
+                                       .hopeless = hopeless,
+                                       .interrupted = options.interrupted,
+                                       .stiffness_guess = stiffness});
     if (point.stiffness) stiffness = point.stiffness;
     return point;
   }
 
   // With a sample more.
   const PointResult& repeated(PointResult& point) const {
-    runners.add_sample(point, {.timeout = options.timeout, .interrupted = options.interrupted});
+    add_sample(point, run_one, {.timeout = options.timeout, .interrupted = options.interrupted});
     return point;
   }
 
@@ -338,7 +340,7 @@ double value_at(const TunedNumber& number, double position) {
 }
 
 TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene, TuneOptions options,
-                       const SweepRunners& runners, const TunedEntry* known) {
+                       const Runner& run, const TunedEntry* known) {
   const inextensible::Backend& backend = *inextensible::find_backend(solver);
   const std::vector<TunedNumber> numbers = tunable_numbers(backend);
   options.budget = std::min(options.budget, options.trials_each * static_cast<int>(numbers.size()));
@@ -359,7 +361,7 @@ TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene, TuneOp
       here.refine = false;
       here.resolutions = {size};
       here.limits = {limit};
-      if (auto place = Tuner{here, options, runners, numbers,
+      if (auto place = Tuner{here, options, run, numbers,
                              values_of(there.settings_for(size, limit), numbers)}
                            .run(guess))
         entry.places.push_back(std::move(*place));

@@ -63,6 +63,6 @@ struct TuneOptions {
 // solver fails as it is. known: settings of other places; each search begins with those of the
 // nearest one instead of the solver's own, and must better them. Throws Interrupted.
 TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene, TuneOptions options,
-                       const SweepRunners& runners = {}, const TunedEntry* known = nullptr);
+                       const Runner& run, const TunedEntry* known = nullptr);
 
 }  // namespace harness

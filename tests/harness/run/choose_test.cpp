@@ -95,8 +95,7 @@ class InventedMachine {
     std::ranges::reverse(sweep.contestants);
     sweep.coarsest = 1.0 / 60;
     sweep.finest = 1.0 / 240;
-    SweepRunners runners;
-    runners.run = [this](const PointSpec& spec, const RunLimits& limits, auto) {
+    const auto run = [this](const PointSpec& spec, const RunLimits& limits) {
       calls.push_back((limits.look        ? "screen "
                        : limits.sample_of ? "repeat "
                                           : "run ") +
@@ -107,8 +106,7 @@ class InventedMachine {
     };
     return try_contestants(
         suite, plan(suite, {}), {},
-        {for_seconds, [this] { return clock; }, [this] { return clock >= interrupt_at; }}, {},
-        runners);
+        {for_seconds, [this] { return clock; }, [this] { return clock >= interrupt_at; }}, {}, run);
   }
 
  private:

@@ -61,7 +61,7 @@ class JournalTest : public ::testing::Test {
     if (journal.header().is_null()) journal.start(header_of(suite));
     FakeMachine machine = hashing_machine();
     const auto outcome =
-        run_sweep(suite, plan(suite, {}), {}, journaled(machine.runners(), journal));
+        run_sweep(suite, plan(suite, {}), {}, journaled(machine.runner(), journal));
     runs = static_cast<int>(machine.specs.size()) + machine.repetitions;
     return points_json(outcome.points);
   }
@@ -138,7 +138,7 @@ TEST_P(ShardTest, JoinedAreTheWhole) {
   FakeMachine machine = hashing_machine();
   const auto result = [&](const std::vector<Search>& some, const std::string& name) {
     return result_document({{"selection", {{"shard", name}}}}, suite, {"bench"}, true,
-                           run_sweep(suite, some, {}, machine.runners()).points);
+                           run_sweep(suite, some, {}, machine.runner()).points);
   };
   const json whole = result(searches, "");
   const auto sorted = [](const json& document) {

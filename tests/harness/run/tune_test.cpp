@@ -131,7 +131,7 @@ TunedEntry tuned(FakeMachine& machine, const TuneOptions& options = {
                                            .budget = 60, .trials_each = 30, .longest_run = 10}) {
   machine.stops = true;
   TunedEntry entry =
-      tune_solver("gauss_seidel_colored", tuning_scenes().front(), options, machine.runners());
+      tune_solver("gauss_seidel_colored", tuning_scenes().front(), options, machine.runner());
   EXPECT_EQ(entry.places.size(), 6u);
   return entry;
 }
@@ -263,7 +263,7 @@ TEST(Tune, AnEntryIsRefusedOnceItsRuleHasChanged) {
 
 TEST(Tune, ASolverWithNothingToTuneIsNotRunAndAnInterruptionIsPassedOn) {
   FakeMachine machine{bowl_of};
-  EXPECT_TRUE(tune_solver("null", tuning_scenes().front(), {}, machine.runners()).places.empty());
+  EXPECT_TRUE(tune_solver("null", tuning_scenes().front(), {}, machine.runner()).places.empty());
   EXPECT_TRUE(machine.specs.empty());
   machine.status = [](const auto&) -> PointStatus { throw Interrupted(); };
   EXPECT_THROW(static_cast<void>(tuned(machine)), Interrupted);
