@@ -226,18 +226,6 @@ class StepSearch {
 
 }  // namespace
 
-std::vector<std::size_t> BestSteps::near_best(double level, double factor) const {
-  std::vector<std::size_t> rungs;
-  const auto times = seconds.find(level);
-  if (times == seconds.end()) return rungs;
-  double least = never;
-  for (const auto& [rung, taken] : times->second) least = std::min(least, taken);
-  for (const auto& [rung, taken] : times->second) {
-    if (taken <= factor * least) rungs.push_back(rung);
-  }
-  return rungs;
-}
-
 BestSteps find_best_steps(const StepLadder& ladder) { return StepSearch(ladder).run(); }
 
 }  // namespace harness

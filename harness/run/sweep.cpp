@@ -27,9 +27,9 @@ constexpr int other_reps = 5;           // at most, of the other points of a ste
 
 // What may be the best point of one search, by rung; the points' place in the outcome.
 struct Choice {
-  std::map<std::size_t, std::size_t> candidates;
-  std::size_t rungs = 0;      // of the whole ladder
-  double level = any_motion;  // of error
+  double level;       // of error
+  std::size_t rungs;  // of the whole ladder
+  std::map<std::size_t, std::size_t> candidates = {};
 };
 
 const char* ladder_end(std::size_t rung, std::size_t rungs) {
@@ -40,7 +40,6 @@ const char* ladder_end(std::size_t rung, std::size_t rungs) {
 // By the times of all samples so far.
 void choose(const std::vector<Choice>& choices, std::vector<PointResult>& points) {
   for (const Choice& choice : choices) {
-    if (choice.candidates.empty()) continue;
     const auto [rung, place] = *std::ranges::min_element(
         choice.candidates, {}, [&](const auto& one) { return points[one.second].seconds(); });
     PointResult& point = points[place];
@@ -197,10 +196,9 @@ void Sweep::find_best(std::size_t number, Neighbour& neighbour) {
     return add(std::move(point), number);
   };
   // Unless its runs have taken long already.
-  const auto again = [&](std::size_t rung) -> const PointResult& {
+  const auto again = [&](std::size_t rung) {
     PointResult& point = points[place_of_rung.at(rung)];
     if (point.measured_seconds() < repeat_for) repeat(point);
-    return point;
   };
   const BestSteps found =
       find_best_steps({search.ladder.size(), try_rung, again, levels_of(suite), search.stride,
@@ -210,14 +208,13 @@ void Sweep::find_best(std::size_t number, Neighbour& neighbour) {
     return;
   }
   neighbour.best_step = search.ladder[*found.best];
-  std::vector<double> levels = levels_of(suite);
-  levels.insert(levels.begin(), any_motion);
-  for (const double level : levels) {
-    Choice& choice = choices.emplace_back();
-    choice.rungs = search.ladder.size();
-    choice.level = level;
-    for (const std::size_t rung : found.near_best(level, candidate_factor))
-      choice.candidates[rung] = place_of_rung.at(rung);
+  for (auto at = found.seconds.rbegin(); at != found.seconds.rend(); ++at) {  // loose to tight
+    const auto& [level, times] = *at;
+    Choice& choice = choices.emplace_back(Choice{level, search.ladder.size()});
+    const double least =
+        std::ranges::min_element(times, {}, [](const auto& one) { return one.second; })->second;
+    for (const auto& [rung, seconds] : times)
+      if (seconds <= candidate_factor * least) choice.candidates[rung] = place_of_rung.at(rung);
   }
 }
 

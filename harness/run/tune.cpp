@@ -22,6 +22,7 @@ constexpr double first_reach = 0.3;  // standard deviation of the first moves, o
 constexpr double last_reach = 0.15;  // times the first
 constexpr double least_gain = 0.05;  // all of it must be faster than the defaults by more than this
 constexpr std::uint64_t seed = 1;
+constexpr int digits = 3;  // of values: two more than the search can tell apart
 
 double shift(const TunedNumber& number) {
   return number.whole && number.range.least < 1 ? 1 - number.range.least : 0;
@@ -35,12 +36,6 @@ bool logarithmic(const TunedNumber& number) {
 // How many times farther the range's lower end is from its bound than the upper one.
 double distance_ratio(const inextensible::SearchRange& range) {
   return (*range.bound - range.least) / (*range.bound - range.largest);
-}
-
-// To three digits: two more than the search can tell apart.
-double rounded(double value) {
-  const double digits = std::pow(10, 3 - std::ceil(std::log10(std::abs(value) + 1e-300)));
-  return std::round(value * digits) / digits;
 }
 
 using Random = std::mt19937_64;
@@ -139,10 +134,8 @@ struct Tuner {
     return point;
   }
 
-  // With a sample more.
-  const PointResult& repeated(PointResult& point) const {
+  void repeat(PointResult& point) const {
     add_sample(point, run_one, {.timeout = options.timeout, .interrupted = options.interrupted});
-    return point;
   }
 
   // The ladder's best step with the settings that the search begins with, at a smaller size where
@@ -188,9 +181,7 @@ struct Tuner {
       if (counts(at->second)) best = std::min(best, at->second.seconds());
       return at->second;
     };
-    const auto again = [&](std::size_t rung) -> const PointResult& {
-      return repeated(known.at(rung));
-    };
+    const auto again = [&](std::size_t rung) { repeat(known.at(rung)); };
     find_best_steps({search.ladder.size(), run, again, {headline_error}});
     for (const auto& [rung, point] : known)
       if (counts(point)) learn({rung, point.seconds()});
@@ -208,7 +199,7 @@ struct Tuner {
                   hopeless, fastest);
     // One run is enough to say of what is slower that it is not better.
     if (rung && (!in_race || fastest.seconds() < leader.seconds)) {
-      for (int i = 1; i < samples; ++i) repeated(fastest);
+      for (int i = 1; i < samples; ++i) repeat(fastest);
     }
     if (rung && fastest.seconds() > hopeless) rung.reset();
     options.tell(scene.scene + "/" + search.base.solver + " " + nlohmann::json(settings).dump() +
@@ -329,14 +320,14 @@ double value_at(const TunedNumber& number, double position) {
   const auto& [least, largest, bound] = number.range;
   if (bound) {
     const double distance = (*bound - least) * std::pow(distance_ratio(number.range), -position);
-    return std::clamp(*bound - rounded(distance), least, largest);
+    return std::clamp(*bound - rounded_to(distance, digits), least, largest);
   }
   const double s = shift(number);
   const double value = logarithmic(number)
                            ? (least + s) * std::pow((largest + s) / (least + s), position) - s
                            : least + position * (largest - least);
   if (number.whole) return std::clamp(std::round(value), std::ceil(least), std::floor(largest));
-  return std::clamp(rounded(value), least, largest);
+  return std::clamp(rounded_to(value, digits), least, largest);
 }
 
 TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene, TuneOptions options,
