@@ -16,16 +16,19 @@ using nlohmann::json;
 
 // Two scenes, two limits, three sizes: 60 searches of up to ten steps.
 Suite suite_of(const std::string& axis) {
-  const auto sweep = [&axis](const std::string& scene, const std::string& sizes, int n) {
-    const std::string rest = R"("solvers": ["shake", "icd"], "steps": {"finest": 0.002}, )";
-    return R"({"scene": ")" + scene + R"(", "sweep": ")" + axis + "\", " + rest +
-           (axis == "strain"
-                ? R"("limits": [0.1, 0.01], "scene_parameters": {"n": )" + std::to_string(n) + "}}"
-                : R"("limit": 0.01, "resolutions": )" + sizes + "}");
-  };
-  return parse_suite(R"({"name": "test", "seed": 3, "reps": 3, "sweeps": [)" +
-                         sweep("chain", "[5, 7, 9]", 7) + ", " + sweep("drape", "[5, 7]", 5) + "]}",
-                     "test");
+  json sweeps = json::array();
+  for (const auto& [scene, sizes] :
+       std::map<std::string, std::vector<int>>{{"chain", {5, 7, 9}}, {"drape", {5, 7}}}) {
+    sweeps.push_back({{"scene", scene},
+                      {"sweep", axis},
+                      {"solvers", {"shake", "icd"}},
+                      {"steps", {{"finest", 0.002}}}});
+    sweeps.back().update(axis == "strain"
+                             ? json{{"limits", {0.1, 0.01}}, {"scene_parameters", {{"n", 7}}}}
+                             : json{{"limit", 0.01}, {"resolutions", sizes}});
+  }
+  const json suite = {{"name", "test"}, {"seed", 3}, {"reps", 3}, {"sweeps", sweeps}};
+  return parse_suite(suite.dump(), "test");
 }
 
 // Times depend on what is run alone; runs fail now and then.

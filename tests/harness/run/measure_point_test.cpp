@@ -21,7 +21,7 @@ namespace {
 TEST(Batches, ASampleOfAShortRunTakesAtLeastTwentyMilliseconds) {
   PointResult point = run_point(spec_at("chain", {{"n", 10}}, "gauss_seidel", 0.001), {});
   ASSERT_TRUE(point.ok()) << point.detail;
-  for (int i = 1; i < 4; ++i) append(run_point(point.spec, {.sample_of = &point}), point);
+  for (int i = 1; i < 4; ++i) add_sample(point, run_point, {});
   ASSERT_EQ(point.samples.size(), 4u);
   ASSERT_EQ(point.sample_runs.size(), 4u);
   ASSERT_EQ(point.cpu_samples.size(), 4u);
@@ -40,9 +40,8 @@ TEST(Batches, ASampleOfAShortRunTakesAtLeastTwentyMilliseconds) {
 // Work is that of one run, however many a sample has.
 TEST(Batches, WithoutAReaderOfTimesOneRunIsASample) {
   const PointSpec spec = spec_at("chain", {{"n", 10}}, "gauss_seidel", 0.01);
-  const RunLimits untimed{.timed = false};
-  PointResult point = run_point(spec, untimed);
-  append(run_point(spec, {.timed = false, .sample_of = &point}), point);
+  PointResult point = run_point(spec, {.timed = false});
+  add_sample(point, run_point, {.timed = false});
   EXPECT_EQ(point.sample_runs, (std::vector<int>{1, 1}));
   EXPECT_EQ(point.retaken, 0);
   EXPECT_EQ(run_point(spec, {}).work, point.work);
@@ -66,29 +65,25 @@ TEST(PointRunner, ACalibrationIsCutOffByItsWorkAlone) {
   EXPECT_FALSE(cut.stiffness);
 }
 
-// Steps of known length and time, cut into frames.
-TEST(FrameTimes, AddUpTheStepsThatEndInAFrame) {
-  FrameTimes frames(1.0 / 120);
-  for (int i = 1; i <= 240; ++i)  // two seconds; the 100th step is slow
-    frames.add(1, 1.0 / 120, i / 120.0, i == 100 ? 1.0 : 0.001);
-  const std::vector<FrameTime> rates = frames.summary();
-  ASSERT_EQ(rates.size(), 3u);
-  const double steps[] = {5, 4, 2};  // a frame
-  for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(rates[i].rate, 120 / steps[i]);
-    EXPECT_NEAR(rates[i].median, 0.001 * steps[i], 1e-12);
-    EXPECT_NEAR(rates[i].worst, 1 + 0.001 * (steps[i] - 1), 1e-12);
-    EXPECT_LE(rates[i].slow, rates[i].worst);
-    EXPECT_GE(rates[i].slow, rates[i].median);
-  }
-}
-
 // `steps` of length h, timed in blocks; the last step takes `last` seconds, each other one 0.5.
 std::vector<FrameTime> frames_of(double h, int steps, int block, double last = 0.5) {
   FrameTimes frames(h);
   for (int i = block; i <= steps; i += block)
     frames.add(block, h, i * h, i == steps ? last : 0.5 * block);
   return frames.summary();
+}
+
+TEST(FrameTimes, AddUpTheStepsThatEndInAFrame) {
+  const auto rates = frames_of(1.0 / 120, 240, 1, 9);
+  ASSERT_EQ(rates.size(), 3u);
+  const double steps[] = {5, 4, 2};  // a frame
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(rates[i].rate, 120 / steps[i]);
+    EXPECT_NEAR(rates[i].median, 0.5 * steps[i], 1e-12);
+    EXPECT_NEAR(rates[i].worst, 9 + 0.5 * (steps[i] - 1), 1e-12);
+    EXPECT_LE(rates[i].slow, rates[i].worst);
+    EXPECT_GE(rates[i].slow, rates[i].median);
+  }
 }
 
 TEST(FrameTimes, OfStepsThatAreTimedTogetherAreThoseOfEachAlone) {
