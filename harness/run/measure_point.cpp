@@ -52,7 +52,7 @@ bool may_be_retaken(const Batch& batch) { return batch.ok() && batch.seconds < l
 // Takes samples of one point.
 struct Sampler {
   const PointResult& point;  // with the samples before
-  PointRunner& runner;
+  const PointRunner& runner;
   const inextensible::Settings& settings;
   // Reads of the clock between phases are part of the time of a short step, so that it is timed
   // without them, and the phases in runs of their own.
@@ -88,11 +88,10 @@ struct Sampler {
     return std::move(sample.last);
   }
 
-  // As many runs as take at least that long together, s; each has the whole time-out to itself.
+  // As many runs as take at least that long together, s.
   Batch batch(double at_least, bool with_phases) {
     Batch batch;
     do {
-      runner.restart_clock(RunPart::measured);
       batch.add(runner.run(settings, false, diverged_strain, with_phases));
     } while (limits.timed && batch.ok() && batch.seconds < at_least);
     return batch;
@@ -110,7 +109,7 @@ struct Sampler {
 
 // The stiffness that a point's springs need, in its settings too. False: there is none, and the
 // point says why.
-bool calibrate(PointResult& point, PointRunner& runner, inextensible::Settings& settings,
+bool calibrate(PointResult& point, const PointRunner& runner, inextensible::Settings& settings,
                std::optional<double> guess) {
   const PointSpec& spec = point.spec;
   const auto begin = Clock::now();
@@ -119,9 +118,8 @@ bool calibrate(PointResult& point, PointRunner& runner, inextensible::Settings& 
       spec.strain_limit, guess.value_or(first_stiffness(runner.scene(), spec.strain_limit)),
       [&](double stiffness) -> CalibrationTrial {
         settings["stiffness"] = stiffness;
-        runner.restart_clock(RunPart::calibration);  // every run has the whole time-out to itself
-        const Run run =
-            runner.run(settings, true, calibration_cut_short * spec.strain_limit, true, true);
+        const Run run = runner.run(settings, true, calibration_cut_short * spec.strain_limit, true,
+                                   RunPart::calibration);
         return {run.status, run.measures.max_strain, run.seconds, run.detail};
       });
   point.calibration_seconds = since(begin);
@@ -139,11 +137,10 @@ bool calibrate(PointResult& point, PointRunner& runner, inextensible::Settings& 
 // The judged run, and a first sample: that run itself if it is long enough, and nothing disturbed
 // it. Iterates are kept while the solver's clock runs, so that an observed run's time is not its
 // own.
-void measure(PointResult& point, PointRunner& runner, const inextensible::Settings& settings,
+void measure(PointResult& point, const PointRunner& runner, const inextensible::Settings& settings,
              const RunLimits& limits) {
   const bool timed = limits.timed;
   const double before = timed ? quiet_probe().look() : 0;
-  runner.restart_clock(RunPart::measured);
   Batch judged;
   judged.add(runner.run(settings, true, diverged_strain));
   const double after = timed ? quiet_probe().look() : 0;
@@ -170,7 +167,7 @@ void add_sample(PointResult& more, const RunLimits& limits) {
   const PointResult& point = *limits.sample_of;
   inextensible::Settings settings = point.spec.settings;
   if (point.stiffness) settings["stiffness"] = *point.stiffness;
-  PointRunner runner(point.spec, limits);
+  const PointRunner runner(point.spec, limits);
   const bool short_steps = point.seconds() * point.spec.step < shortest_judged_step;
   Sampler sampler{point, runner, settings, short_steps, limits};
   sampler.add(0);
@@ -207,7 +204,7 @@ void look(PointResult& point, const RunLimits& limits) {
 }
 
 void run_whole(PointResult& point, const RunLimits& limits) {
-  PointRunner runner(point.spec, limits);
+  const PointRunner runner(point.spec, limits);
   point.steps_planned = runner.steps();
   inextensible::Settings settings = point.spec.settings;
   const bool needs_stiffness =

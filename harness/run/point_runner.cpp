@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "harness/base/child_process.h"
+#include "harness/base/clock.h"
 #include "harness/base/statistics.h"
 #include "harness/base/text.h"
 #include "harness/judge/drive.h"
@@ -79,7 +80,6 @@ std::vector<FrameTime> FrameTimes::summary() const {
 PointRunner::PointRunner(const PointSpec& spec, const RunLimits& limits)
     : spec_(spec),
       limits_(limits),
-      start_(Clock::now()),
       scene_(limits.scene ? *limits.scene : find_scene(spec.scene)->build(spec.scene_parameters)),
       backend_(*inextensible::find_backend(spec.solver)),
       steps_(static_cast<int>(std::lround(scene_.duration / spec.step))),
@@ -91,8 +91,8 @@ PointRunner::PointRunner(const PointSpec& spec, const RunLimits& limits)
 class PointRunner::Observed : public Observer {
  public:
   // Without the judge, all time is left to the steps.
-  Observed(const PointRunner& runner, bool judged, double stop_at, bool by_work, Run& run)
-      : runner_(runner), stop_at_(stop_at), by_work_(by_work), run_(run) {
+  Observed(const PointRunner& runner, bool judged, double stop_at, RunPart part, Run& run)
+      : runner_(runner), stop_at_(stop_at), part_(part), run_(run) {
     if (!judged) return;
     judge_.emplace(runner.scene_, judging());
     run.stepper->observe(judge_->observer());
@@ -170,7 +170,7 @@ class PointRunner::Observed : public Observer {
 
   // s, as far as it counts against limits_.hopeless.
   double stepped() const {
-    if (!by_work_) return run_.seconds;
+    if (part_ == RunPart::measured) return run_.seconds;
     return nominal_seconds(run_.stepper->work(), runner_.scene_.problem->constraints()) /
            work_patience;
   }
@@ -219,7 +219,7 @@ class PointRunner::Observed : public Observer {
   const RunLimits& limits_ = runner_.limits_;
   const inextensible::Backend& backend_ = runner_.backend_;
   double stop_at_;
-  bool by_work_;
+  RunPart part_;
   Run& run_;
   std::optional<Judge> judge_;
   FrameTimes frames_{spec_.step};
@@ -229,29 +229,25 @@ class PointRunner::Observed : public Observer {
 };
 
 Run PointRunner::run(const inextensible::Settings& settings, bool judged, double stop_at,
-                     bool phases, bool by_work) const {
+                     bool phases, RunPart part) const {
   Run run;
-  const auto setup = Clock::now();
+  const auto start = Clock::now();
+  if (limits_.heartbeat) limits_.heartbeat->restart(static_cast<int>(part));
   run.stepper = inextensible::make_stepper(
       spec_.solver, scene_.problem, {spec_.strain_limit, spec_.seed, settings, &first_state_});
-  run.setup_seconds = since(setup);
+  run.setup_seconds = since(start);
   run.stepper->measure_phases(phases);
   State state = first_state_;
-  Observed observer(*this, judged, stop_at, by_work, run);
+  Observed observer(*this, judged, stop_at, part, run);
   observer.each({}, {});
   // Between blocks there is little but reads of the clock; the judge takes longer than steps do.
   const double cpu_begin = thread_seconds();
   const DriveState driven =
       drive(*run.stepper, state, {spec_.step, steps_, spec_.adaptive ? usual_halvings : 0},
-            observer, {limits_.timeout, start_, limits_.interrupted});
+            observer, {limits_.timeout, start, limits_.interrupted});
   if (!judged) run.cpu_seconds = thread_seconds() - cpu_begin;
   observer.finish(driven, state.time);
   return run;
-}
-
-void PointRunner::restart_clock(RunPart part) {
-  start_ = Clock::now();
-  if (limits_.heartbeat) limits_.heartbeat->restart(static_cast<int>(part));
 }
 
 }  // namespace harness

@@ -4,7 +4,6 @@
 #include <memory>
 #include <vector>
 
-#include "harness/base/clock.h"
 #include "harness/run/measure_point.h"
 #include "solvers/registry.h"
 
@@ -47,16 +46,14 @@ class PointRunner {
   // Both must outlive this. Throws std::invalid_argument for a scene that makes no problem.
   PointRunner(const PointSpec& spec, const RunLimits& limits);
 
-  // judged: with the judge, whose looks are not timed. The run is cut short once its strain exceeds
-  // stop_at; the errors against a reference are measured only where that is diverged_strain.
-  // Throws Interrupted.
-  // phases: whether they are timed, which takes tens of nanoseconds each.
-  // by_work: a run is hopeless by the nominal time of its work, so that it always ends alike.
+  // A run with the whole time-out to itself. judged: with the judge, whose looks are not timed. The
+  // run is cut short once its strain exceeds stop_at; the errors against a reference are measured
+  // only where that is diverged_strain. phases: whether they are timed, which takes tens of
+  // nanoseconds each. A calibration's run is hopeless by the nominal time of its work, so that it
+  // always ends alike. Throws Interrupted.
   Run run(const inextensible::Settings& settings, bool judged, double stop_at, bool phases = true,
-          bool by_work = false) const;
+          RunPart part = RunPart::measured) const;
 
-  // For the next run.
-  void restart_clock(RunPart part);
   const inextensible::Backend& backend() const { return backend_; }
   const PointSpec& spec() const { return spec_; }
   const Scene& scene() const { return scene_; }
@@ -67,7 +64,6 @@ class PointRunner {
 
   const PointSpec& spec_;
   const RunLimits& limits_;
-  Clock::time_point start_;
   Scene scene_;
   const inextensible::Backend& backend_;
   int steps_;

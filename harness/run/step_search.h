@@ -10,11 +10,9 @@
 
 namespace harness {
 
-// docs/measuring.md ("The time step") has the rule, for the fastest step of any motion and for
-// those within levels of error. With a neighbour's best step the search goes from there in both
-// directions. A failure counts as a rise, and before the first success as a reason to go finer. A
-// fast run with a wrong motion ends no search. Where a best step is an end of what was tried, the
-// search goes on from there. Only then come the rungs between those that halve.
+// The rule is in docs/measuring.md ("The time step"). From a neighbour's best step the search goes
+// in both directions. A failure counts as a rise, and before the first success as a reason to go
+// finer. Where a best step is an end of what was tried, the search continues from there.
 inline constexpr std::size_t samples_when_close = 3;
 
 struct StepLadder {

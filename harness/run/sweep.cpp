@@ -1,13 +1,10 @@
 #include "harness/run/sweep.h"
 
-#include <gsl/gsl_randist.h>
-#include <gsl/gsl_rng.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
-#include <memory>
+#include <random>
 #include <set>
 #include <tuple>
 
@@ -147,16 +144,13 @@ void Sweep::repeat_candidates() {
     const bool full = one.may_be_best && suite.reps >= full_reps;
     return !full || seconds >= least_measured || one.tries >= 2 * suite.reps;
   };
-  const std::unique_ptr<gsl_rng, decltype(&gsl_rng_free)> random(gsl_rng_alloc(gsl_rng_mt19937),
-                                                                 gsl_rng_free);
-  gsl_rng_set(random.get(), suite.seed);
-  for (std::size_t done = 0;;) {
-    std::erase_if(round, enough);
-    if (round.empty()) return;  // GSL's shuffle does not take nothing
-    std::size_t all = done;     // about
+  std::mt19937_64 random(suite.seed);
+  std::size_t done = 0;
+  for (std::erase_if(round, enough); !round.empty(); std::erase_if(round, enough)) {
+    std::size_t all = done;  // about
     for (const Repeated& one : round)
       all += static_cast<std::size_t>(std::max(1, one.least - one.tries));
-    gsl_ran_shuffle(random.get(), round.data(), round.size(), sizeof(Repeated));
+    std::ranges::shuffle(round, random);
     for (Repeated& one : round) {
       repeat(points[one.point]);
       ++one.tries;
