@@ -6,6 +6,7 @@
 #include <map>
 #include <random>
 #include <set>
+#include <utility>
 
 #include "harness/base/text.h"
 #include "harness/points/point_json.h"
@@ -33,9 +34,10 @@ bool logarithmic(const TunedNumber& number) {
   return least > 0 && (number.range.largest + shift(number)) / least >= 10;
 }
 
-// How many times farther the range's lower end is from its bound than the upper one.
-double distance_ratio(const inextensible::SearchRange& range) {
-  return (*range.bound - range.least) / (*range.bound - range.largest);
+// On this scale a setting's values are searched evenly.
+double scaled(const TunedNumber& number, double value) {
+  if (number.range.bound) return -std::log(*number.range.bound - value);
+  return logarithmic(number) ? std::log(value + shift(number)) : value;
 }
 
 using Random = std::mt19937_64;
@@ -193,20 +195,18 @@ struct Tuner {
     const inextensible::Settings settings = settings_of(values);
     const bool in_race = hopeless < 1e300;
     const auto own = measured.find(values);
-    PointResult fastest;
-    std::optional<std::size_t> rung =
+    auto [rung, fastest] =
         best_step(settings, own == measured.end() ? leader.rung : own->second.rung, in_race ? 1 : 2,
-                  hopeless, fastest);
+                  hopeless);
     // One run is enough to say of what is slower that it is not better.
-    if (rung && (!in_race || fastest.seconds() < leader.seconds)) {
+    if (fastest.ok() && (!in_race || fastest.seconds() < leader.seconds)) {
       for (int i = 1; i < samples; ++i) repeat(fastest);
     }
-    if (rung && fastest.seconds() > hopeless) rung.reset();
+    const bool found = fastest.ok() && fastest.seconds() <= hopeless;
     options.tell(scene.scene + "/" + search.base.solver + " " + nlohmann::json(settings).dump() +
-                 ": " + (rung ? duration_text(fastest.seconds()) + "/s" : "too slow"));
-    if (!rung) return {};
-    measured[values] = {*rung, fastest.seconds()};
-    learn(measured[values]);
+                 ": " + (found ? duration_text(fastest.seconds()) + "/s" : "too slow"));
+    if (!found) return {};
+    learn(measured[values] = {rung, fastest.seconds()});
     return fastest.seconds();
   }
 
@@ -214,16 +214,16 @@ struct Tuner {
     if (found.seconds < leader.seconds) leader = found;
   }
 
-  // The rung of the fastest step, whose run goes to `fastest`: from `start` to both sides, until
-  // `patience` steps in a row are not faster.
-  std::optional<std::size_t> best_step(const inextensible::Settings& settings, std::size_t start,
-                                       int patience, double hopeless, PointResult& fastest) {
-    std::optional<std::size_t> best;
+  // The rung of the fastest step and its run, which is not ok if none counts: from `start` to both
+  // sides, until `patience` steps in a row are not faster.
+  std::pair<std::size_t, PointResult> best_step(const inextensible::Settings& settings,
+                                                std::size_t start, int patience, double hopeless) {
+    std::pair<std::size_t, PointResult> best;
+    const PointResult& fastest = best.second;
     const auto faster = [&](std::size_t rung) {
-      PointResult point = run_once(rung, settings, best ? fastest.seconds() : hopeless);
-      if (!counts(point) || (best && point.seconds() >= fastest.seconds())) return false;
-      best = rung;
-      fastest = std::move(point);
+      PointResult point = run_once(rung, settings, fastest.ok() ? fastest.seconds() : hopeless);
+      if (!counts(point) || (fastest.ok() && point.seconds() >= fastest.seconds())) return false;
+      best = {rung, std::move(point)};
       return true;
     };
     faster(start);
@@ -309,23 +309,15 @@ std::vector<TunedNumber> tunable_numbers(const inextensible::Backend& backend) {
 
 double position_of(const TunedNumber& number, double value) {
   const auto& [least, largest, bound] = number.range;
-  const double s = shift(number), inside = std::clamp(value, least, largest);
-  if (bound)
-    return std::log((*bound - least) / (*bound - inside)) / std::log(distance_ratio(number.range));
-  if (!logarithmic(number)) return (inside - least) / (largest - least);
-  return std::log((inside + s) / (least + s)) / std::log((largest + s) / (least + s));
+  const double low = scaled(number, least), high = scaled(number, largest);
+  return (scaled(number, std::clamp(value, least, largest)) - low) / (high - low);
 }
 
 double value_at(const TunedNumber& number, double position) {
   const auto& [least, largest, bound] = number.range;
-  if (bound) {
-    const double distance = (*bound - least) * std::pow(distance_ratio(number.range), -position);
-    return std::clamp(*bound - rounded_to(distance, digits), least, largest);
-  }
-  const double s = shift(number);
-  const double value = logarithmic(number)
-                           ? (least + s) * std::pow((largest + s) / (least + s), position) - s
-                           : least + position * (largest - least);
+  const double at = std::lerp(scaled(number, least), scaled(number, largest), position);
+  if (bound) return std::clamp(*bound - rounded_to(std::exp(-at), digits), least, largest);
+  const double value = logarithmic(number) ? std::exp(at) - shift(number) : at;
   if (number.whole) return std::clamp(std::round(value), std::ceil(least), std::floor(largest));
   return std::clamp(rounded_to(value, digits), least, largest);
 }
