@@ -51,18 +51,18 @@ bool may_be_retaken(const Batch& batch) { return batch.ok() && batch.seconds < l
 
 // Takes samples of one point.
 struct Sampler {
-  const PointResult& point;  // with the samples before
+  const PointResult& point;  // with the previous samples
   const PointRunner& runner;
   const inextensible::Settings& settings;
   // Reads of the clock between phases are part of the time of a short step, so that it is timed
   // without them, and the phases in runs of their own.
   bool short_steps;
   const RunLimits& limits;
-  Samples taken = {};
+  Samples& taken;                          // gets the samples
   inextensible::PhaseSeconds phases = {};  // of the filter sample
 
-  // Takes a sample; returns the last run, which may have failed. retaken: tries that were dropped
-  // before.
+  // Takes a sample and returns the last run, which may have failed. retaken: earlier tries that
+  // were dropped.
   Run add(int retaken) {
     if (short_steps) {
       Batch in_phases = batch(least_filter_sample, true);
@@ -107,8 +107,14 @@ struct Sampler {
   }
 };
 
-// The stiffness that a point's springs need, in its settings too. False: there is none, and the
-// point says why.
+// Whether the strain limit must be met by a stiffness that is still to be found.
+bool needs_stiffness(const PointRunner& runner) {
+  return runner.backend().strain_control == inextensible::StrainControl::stiffness &&
+         !runner.spec().settings.contains("stiffness");
+}
+
+// Finds the stiffness that a point's springs need, and adds it to the settings. False: there is
+// none, and the point says why.
 bool calibrate(PointResult& point, const PointRunner& runner, inextensible::Settings& settings,
                std::optional<double> guess) {
   const PointSpec& spec = point.spec;
@@ -150,14 +156,13 @@ void measure(PointResult& point, const PointRunner& runner, const inextensible::
   point.linear_solver = judged.last.stepper->linear_solver();
   if (!point.ok()) return;
   const bool short_steps = judged.last.seconds / runner.steps() < shortest_judged_step;
-  Sampler sampler{point, runner, settings, short_steps, limits};
+  Sampler sampler{point, runner, settings, short_steps, limits, point};
   const bool a_sample =
       !judged.last.observed && !short_steps && (!timed || judged.seconds >= least_sample);
   const bool disturbed = timed && limits.most_retaken > 0 && may_be_retaken(judged) &&
                          quiet_probe().disturbed(std::max(before, after));
   const Run last =
       a_sample && !disturbed ? sampler.record(std::move(judged)) : sampler.add(a_sample ? 1 : 0);
-  append(sampler.taken, point);
   if (!point.filter_samples.empty()) point.phases = sampler.phases;
   point.status = last.status;  // without a time it is no result
   point.detail = last.detail;
@@ -169,18 +174,14 @@ void add_sample(PointResult& more, const RunLimits& limits) {
   if (point.stiffness) settings["stiffness"] = *point.stiffness;
   const PointRunner runner(point.spec, limits);
   const bool short_steps = point.seconds() * point.spec.step < shortest_judged_step;
-  Sampler sampler{point, runner, settings, short_steps, limits};
-  sampler.add(0);
-  append(sampler.taken, more);
+  Sampler{point, runner, settings, short_steps, limits, more}.add(0);
 }
 
 void look(PointResult& point, const RunLimits& limits) {
   const PointSpec& spec = point.spec;
-  using inextensible::StrainControl;
   const PointRunner runner(spec, limits);
-  const StrainControl control = runner.backend().strain_control;
   inextensible::Settings settings = spec.settings;
-  const bool springs = control == StrainControl::stiffness && !settings.contains("stiffness");
+  const bool springs = needs_stiffness(runner);
   if (springs)
     settings["stiffness"] =
         limits.stiffness_guess.value_or(first_stiffness(runner.scene(), spec.strain_limit));
@@ -196,7 +197,7 @@ void look(PointResult& point, const RunLimits& limits) {
     point.status = run.status;
     point.detail = run.detail;
   } else if (const double strain = run.measures.max_strain;
-             !springs && control != StrainControl::none &&
+             !springs && runner.backend().strain_control != inextensible::StrainControl::none &&
              !(strain <= spec.strain_limit * (1 + 1e-9))) {
     point.status = PointStatus::strain_missed;
     point.detail = "strain " + told_apart(strain, spec.strain_limit);
@@ -207,10 +208,7 @@ void run_whole(PointResult& point, const RunLimits& limits) {
   const PointRunner runner(point.spec, limits);
   point.steps_planned = runner.steps();
   inextensible::Settings settings = point.spec.settings;
-  const bool needs_stiffness =
-      runner.backend().strain_control == inextensible::StrainControl::stiffness &&
-      !settings.contains("stiffness");
-  if (!needs_stiffness || calibrate(point, runner, settings, limits.stiffness_guess))
+  if (!needs_stiffness(runner) || calibrate(point, runner, settings, limits.stiffness_guess))
     measure(point, runner, settings, limits);
 }
 
