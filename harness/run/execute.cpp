@@ -74,14 +74,14 @@ std::vector<Samples> cut_off_repetitions(PointResult& point) {
   return repetitions;
 }
 
-// A search for a stiffness goes another way from another start, where a neighbouring point failed
-// then and does not now: its run is another one.
+// A search for a stiffness that began elsewhere, since a neighbouring point failed then but not
+// now, is another run.
 bool same_start(const PointResult& point, std::optional<double> guess) {
   if (!point.ok() || !point.stiffness) return true;
   return guess ? *guess == point.calibration_guess : std::isnan(point.calibration_guess);
 }
 
-// Reads the reference, once and for all children, so that the result names it.
+// The parent reads the reference once for all children, so that the result names it.
 void find_reference(const RunLimits& limits, const PointSpec& spec) {
   if (limits.references) limits.references->find(spec.scene, spec.scene_parameters);
 }
@@ -127,7 +127,7 @@ Runner isolated(const Runner& inner, double memory) {
   return
       [=, scenes = std::make_shared<LastScene>()](const PointSpec& spec, const RunLimits& limits) {
         find_reference(limits, spec);
-        // Where memory is limited, building is part of what is.
+        // A limit on memory includes the scene.
         const Scene* scene = memory > 0 ? nullptr : scenes->of(spec);
         return in_child(
             {limits.timeout, memory, limits.interrupted},

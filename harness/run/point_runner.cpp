@@ -19,19 +19,17 @@ using inextensible::Status;
 
 namespace {
 
-// A run that hardly moves keeps its strain and its energy, as single precision does at tiny steps.
-// Half the reference's motion is far from both ends: phase errors and damping leave more, what does
-// not move leaves none.
+// A run that hardly moves keeps its strain and energy, as in single precision at tiny steps. Phase
+// errors and damping leave far more than half of the reference's motion.
 constexpr double least_motion = 0.5;
 
 constexpr int sampled_instants = 100;  // a run, for statistics that need sorting
 
-// A read of the clock takes tens of nanoseconds, the step of a short chain a few hundred. So steps
-// are timed in blocks of at least this length where the judge need not look in between, and a run
-// whose judged steps are shorter is run again without the judge, for its time.
+// Reading the clock takes tens of nanoseconds, the step of a short chain a few hundred: without the
+// judge, steps are timed in blocks of at least this length.
 constexpr double shortest_block = 2e-5;  // s
 
-// Nominal times are right within a factor of two: work that is a few times too much is hopeless.
+// Nominal times are right within a factor of two only.
 constexpr double work_patience = 4;
 
 constexpr double rounding = 1e-6;  // of a frame: times add up their steps
@@ -106,7 +104,7 @@ class PointRunner::Observed : public Observer {
     return block_;
   }
 
-  // Where this run is, for the process that watches over it. In whatever order it sees that.
+  // Tells the watching process where this run is; the order in which it sees this does not matter.
   void each(const State& state, const DriveState& driven) {
     if (!limits_.heartbeat) return;
     limits_.heartbeat->step.store(driven.steps, std::memory_order_relaxed);
@@ -120,7 +118,7 @@ class PointRunner::Observed : public Observer {
     const double cpu_seconds = thread_seconds() - cpu_begin_;
     if (judge_) run_.cpu_seconds += cpu_seconds;
     const double time = state.time - runner_.first_state_.time;
-    // Where another process had the processor, the frame is not to blame.
+    // Time in which another process had the processor is not the frame's.
     if (driven.taken > 0)
       frames_.add(spec_.adaptive ? 1 : driven.taken, spec_.step, time,
                   std::min(seconds, cpu_seconds));
@@ -150,9 +148,9 @@ class PointRunner::Observed : public Observer {
     options.velocities = backend_.velocities;
     if (stop_at_ != diverged_strain) return options;  // no errors, and nothing beside them
     options.reference = runner_.reference_;
-    // Where growth is the question, memory for iterates would be part of the answer.
+    // Memory for iterates would distort the growth that a resolution sweep measures.
     options.residual = backend_.shows_iterates && !spec_.adaptive && spec_.sweep != "resolution";
-    // A figure draws the series of step sweeps; for the others it would fill files unread.
+    // Only a figure of step sweeps draws the series.
     options.residual_series = spec_.sweep == "step";
     return options;
   }
@@ -194,7 +192,7 @@ class PointRunner::Observed : public Observer {
                   "; stopped at t = " + number_text(time) + " s";
   }
 
-  // What kept a run that reached its end from being one of this motion.
+  // Judges a run that reached its end.
   void decide() {
     const Measures& found = run_.measures;
     if (keeps_strain() && !(found.max_strain <= spec_.strain_limit * (1 + 1e-9))) {

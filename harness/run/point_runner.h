@@ -9,17 +9,17 @@
 
 namespace harness {
 
-// The wall time of a run cut into the frames of a film or a game.
+// Divides a run's wall time into the frames of a film or game.
 class FrameTimes {
  public:
-  // step: s, the run's; no figures are given for frames that are shorter.
+  // step: s; frames that are shorter than it are left out.
   explicit FrameTimes(double step);
 
   // `steps` equal ones that ended at `time` (s, of the scene) took `seconds` of wall time together.
   // A step belongs to the frame in which it ends.
   void add(int steps, double step, double time, double seconds);
 
-  // Times of whole frames; a rate without any is left out.
+  // Times of whole frames; rates without any are left out.
   std::vector<FrameTime> summary() const;
 
  private:
@@ -36,11 +36,11 @@ struct Run : RunOutcome {
   double first_step_seconds = 0;
   double cpu_seconds = 0;  // of the thread, the same
   std::unique_ptr<inextensible::Stepper> stepper;
-  bool observed = false;  // the judge was shown the iterates of its steps
+  bool observed = false;  // the judge saw the iterates
   std::vector<FrameTime> frame_times;
 };
 
-// Scenes are the same for every run of a point; the stepper is constructed each time.
+// All runs of a point share the scene; each constructs its own stepper.
 class PointRunner {
  public:
   // Both must outlive this. Throws std::invalid_argument for a scene that makes no problem.

@@ -16,13 +16,13 @@ namespace {
 constexpr double hopeless_least = 0.2;  // s; shorter runs are always finished
 // Steps whose time is within this factor of the best are repeated before one is called best.
 constexpr double candidate_factor = 1.2;
-// What may be best, in suites that ask for as many samples as this, is run for at least 0.2 s. That
-// many samples can tell two points apart in spite of one that was disturbed.
+// Candidates in suites that ask for this many samples are run for at least 0.2 s. So many samples
+// can tell two points apart even if one sample was disturbed.
 constexpr int full_reps = 7;
 constexpr double least_measured = 0.2;  // s
 constexpr int other_reps = 5;           // at most, of the other points of a step sweep
 
-// What may be the best point of one search, by rung; the points' place in the outcome.
+// The candidates of one search: their places in the outcome, by rung.
 struct Choice {
   double level;       // of error
   std::size_t rungs;  // of the whole ladder
@@ -34,7 +34,7 @@ const char* ladder_end(std::size_t rung, std::size_t rungs) {
   return rung == 0 ? "coarsest" : rung + 1 == rungs ? "finest" : "";
 }
 
-// By the times of all samples so far.
+// Marks the best points by all samples so far.
 void choose(const std::vector<Choice>& choices, std::vector<PointResult>& points) {
   for (const Choice& choice : choices) {
     const auto [rung, place] = *std::ranges::min_element(
@@ -63,7 +63,7 @@ struct Neighbour {
     return near->second / spec.strain_limit;
   }
 
-  // The rung of another ladder that comes next to the best step.
+  // The first rung of another ladder that is not coarser than the best step.
   std::optional<std::size_t> rung_in(const std::vector<double>& ladder) const {
     if (!best_step) return std::nullopt;
     const auto near =
@@ -72,7 +72,7 @@ struct Neighbour {
   }
 };
 
-// Where contestants meet: scene, parameters, limit, and the step where all run at every step.
+// Where contestants are compared: scene, parameters, limit, and the step in a search of all steps.
 using MeetingPlace = std::tuple<std::string, SceneParameters, double, double>;
 
 // What all searches of a sweep share.
@@ -83,8 +83,7 @@ struct Sweep {
   const Runner& run;
   std::vector<PointResult>& points;
   std::vector<Choice> choices = {};
-  // The fastest run at each place so far whose motion is right to the headline's error, as far as
-  // errors are known.
+  // s/s; the fastest run at each place whose motion error, if known, is within the headline's.
   std::map<MeetingPlace, double> fastest = {};
 
   void remember(const MeetingPlace& place, const PointResult& point) {
@@ -100,7 +99,7 @@ struct Sweep {
   }
 
   const PointResult& add(PointResult point, std::size_t search) {
-    // A point that no judge has seen: it was skipped, or its process ended early.
+    // The judge has not seen a point that was skipped or whose process ended early.
     Measures& measures = point.measures;
     if (std::isnan(measures.trajectory) && measures.unknown_because.empty())
       measures.unknown_because = "no run came to an end that could be judged";
@@ -117,8 +116,8 @@ struct Sweep {
   void repeat_candidates();
 };
 
-// Rounds of one sample each, in a shuffled order, of the points that may be best (of a step sweep:
-// of all that ran to the end), until each has enough.
+// Takes one sample of each candidate (in a step sweep: of each point that ran to the end) per
+// round, in a shuffled order, until each has enough.
 void Sweep::repeat_candidates() {
   struct Repeated {
     std::size_t point;
@@ -159,11 +158,10 @@ void Sweep::repeat_candidates() {
   }
 }
 
-// Each rung of the search's ladder is run when it is first asked for.
 void Sweep::find_best(std::size_t number, Neighbour& neighbour) {
   const Search& search = searches[number];
   std::map<std::size_t, std::size_t> place_of_rung;
-  // Stopped for others' sake: at a neighbouring limit it may be nearer to them.
+  // A run was stopped because others are faster; at the next limit it may be closer to them.
   bool was_far_behind = false;
   const auto try_rung = [&](std::size_t rung, double longest_useful) -> const PointResult& {
     if (const auto known = place_of_rung.find(rung); known != place_of_rung.end())
@@ -189,7 +187,6 @@ void Sweep::find_best(std::size_t number, Neighbour& neighbour) {
     place_of_rung[rung] = points.size();
     return add(std::move(point), number);
   };
-  // Unless its runs have taken long already.
   const auto again = [&](std::size_t rung) {
     PointResult& point = points[place_of_rung.at(rung)];
     if (point.measured_seconds() < repeat_for) repeat(point);
