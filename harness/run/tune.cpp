@@ -21,7 +21,7 @@ constexpr double none = std::numeric_limits<double>::infinity();  // seconds of 
 constexpr double give_up_trial_at = 1.5;                          // times the best seconds
 constexpr double first_reach = 0.3;  // standard deviation of the first moves, over the range
 constexpr double last_reach = 0.15;  // times the first
-constexpr double least_gain = 0.05;  // all of it must be faster than the defaults by more than this
+constexpr double least_gain = 0.05;  // the result must be faster than the defaults by more
 constexpr std::uint64_t seed = 1;
 constexpr int digits = 3;  // of values: two more than the search can tell apart
 
@@ -56,8 +56,7 @@ constexpr double give_up_at = 2.5;  // times the time that is known at a place
 constexpr double far_too_long = 4;  // times options.longest_run: no step of a short one takes it
 constexpr int samples = 3;          // of the best steps
 
-// Whether a run ran to the end with a motion that is right to the headline's error, or of which
-// nothing is known.
+// Whether a run reached its end and its motion error, if known, is within the headline's.
 bool counts(const PointResult& point) {
   return point.ok() && within_known_error(point.measures, headline_error);
 }
@@ -73,13 +72,13 @@ struct Tuner {
   const TuneOptions& options;
   const Runner& run_one;
   const std::vector<TunedNumber>& numbers;
-  Values initial;  // what the search begins with, and must better
+  Values initial;  // where the search begins; it must improve on it
   Search search = {};
   std::optional<double> stiffness = {};   // to begin calibrations from
   Found leader = {};                      // so far; where the next search begins
   std::map<Values, Found> measured = {};  // the last time
 
-  // Nothing where no step counts with any settings tried. `guess` is tried first and takes the
+  // Nothing if no step counts with any settings tried. `guess` is tried first and receives the
   // values found.
   std::optional<TunedPlace> run(Values& guess) {
     begin(guess);
@@ -104,7 +103,6 @@ struct Tuner {
         search.ladder[now.rung]};
   }
 
-  // At this size of the scene; nothing is known there.
   void take_size(int size) {
     Suite suite;
     suite.sweeps = {scene};
@@ -140,9 +138,8 @@ struct Tuner {
     add_sample(point, run_one, {.timeout = options.timeout, .interrupted = options.interrupted});
   }
 
-  // The ladder's best step with the settings that the search begins with, at a smaller size where
-  // that takes too long, and longer with `guess` too: a default must not decide at which size a
-  // method is tuned.
+  // Finds the best step with the initial settings, at a smaller size where it takes too long with
+  // both these and `guess`: a default must not decide at which size a method is tuned.
   void begin(const Values& guess) {
     take_size(scene.resolutions.front());
     const std::vector<int> smaller_ones = smaller_sizes(scene.scene);
@@ -157,8 +154,8 @@ struct Tuner {
     }
   }
 
-  // Where no step counts with the settings that the search was to begin with, it begins with
-  // `guess` or the first drawn set with which one does.
+  // Where no step counts with the initial settings, the search begins with `guess` or the first
+  // drawn set for which one does.
   void draw_start(const Values& guess) {
     std::mt19937_64 random{1};
     std::uniform_real_distribution<double> position(0, 1);
@@ -189,8 +186,7 @@ struct Tuner {
       if (counts(point)) learn({rung, point.seconds()});
   }
 
-  // The seconds of the best step with these settings; none if there is none, or they are above
-  // `hopeless`.
+  // Seconds of the best step with these settings; none above `hopeless`.
   std::optional<double> evaluate(const Values& values, double hopeless) {
     const inextensible::Settings settings = settings_of(values);
     const bool in_race = hopeless < 1e300;
@@ -198,7 +194,7 @@ struct Tuner {
     auto [rung, fastest] =
         best_step(settings, own == measured.end() ? leader.rung : own->second.rung, in_race ? 1 : 2,
                   hopeless);
-    // One run is enough to say of what is slower that it is not better.
+    // One run is enough to rule out slower settings.
     if (fastest.ok() && (!in_race || fastest.seconds() < leader.seconds)) {
       for (int i = 1; i < samples; ++i) repeat(fastest);
     }
@@ -262,7 +258,7 @@ TuneOutcome tune_values(const std::vector<TunedNumber>& numbers, const TuneObjec
     const auto found = seconds(values, hopeless);
     return found && std::isfinite(*found) ? *found : none;
   };
-  // But for the last comparison, two evaluations.
+  // The last comparison takes two evaluations.
   const auto left = [&] { return budget - 2 - outcome.evaluations; };
   double best = evaluate(initial, none);
   if (best == none) return outcome;
