@@ -1,5 +1,5 @@
-// Real runs: their samples, which of short ones are means of batches, their frames, and contact
-// over a run as a whole. And which samples are taken again, with noise of our own making.
+// Real runs: samples of short ones, frames, and contact over a whole run; and, with artificial
+// noise, which samples are taken again.
 #include "harness/run/measure_point.h"
 
 #include <gtest/gtest.h>
@@ -37,8 +37,8 @@ TEST(Batches, ASampleOfAShortRunTakesAtLeastTwentyMilliseconds) {
   EXPECT_EQ(point.seconds(), *std::ranges::min_element(point.samples));
 }
 
-// Work is that of one run, however many a sample has.
-TEST(Batches, WithoutAReaderOfTimesOneRunIsASample) {
+// Work is that of one run, however many a sample takes.
+TEST(Batches, AnUntimedSampleIsOneRun) {
   const PointSpec spec = spec_at("chain", {{"n", 10}}, "gauss_seidel", 0.01);
   PointResult point = run_point(spec, {.timed = false});
   add_sample(point, run_point, {.timed = false});
@@ -47,7 +47,7 @@ TEST(Batches, WithoutAReaderOfTimesOneRunIsASample) {
   EXPECT_EQ(run_point(spec, {}).work, point.work);
 }
 
-// Two runs of one command agree: what a search for a stiffness may take is work, not time.
+// Two runs of one command agree: a calibration is limited by work, not time.
 TEST(PointRunner, ACalibrationIsCutOffByItsWorkAlone) {
   const PointSpec spec =
       spec_at("drape", {{"n", 7}, {"duration", 0.5}}, "vertex_block_descent", 0.01);
@@ -86,7 +86,7 @@ TEST(FrameTimes, AddUpTheStepsThatEndInAFrame) {
   }
 }
 
-TEST(FrameTimes, OfStepsThatAreTimedTogetherAreThoseOfEachAlone) {
+TEST(FrameTimes, AreTheSameForStepsTimedInBlocks) {
   const auto one = frames_of(0.001, 1000, 1), blocks = frames_of(0.001, 1000, 40, 20);
   ASSERT_EQ(one.size(), blocks.size());
   for (std::size_t i = 0; i < one.size(); ++i) {
@@ -95,7 +95,7 @@ TEST(FrameTimes, OfStepsThatAreTimedTogetherAreThoseOfEachAlone) {
   }
 }
 
-TEST(FrameTimes, OfPartsOfAFrameAndOfFramesShorterThanAStepAreLeftOut) {
+TEST(FrameTimes, LeaveOutPartsOfAFrameAndFramesShorterThanAStep) {
   const auto coarse = frames_of(1.0 / 25, 25, 1);
   ASSERT_EQ(coarse.size(), 1u);
   EXPECT_EQ(coarse[0].rate, 24);
@@ -105,9 +105,8 @@ TEST(FrameTimes, OfPartsOfAFrameAndOfFramesShorterThanAStepAreLeftOut) {
 
 class DrapeErrors : public ::testing::TestWithParam<const char*> {};
 
-// A cloth that falls onto a sphere with friction, nearly inextensible: with each halving of the
-// step the error falls until it is what the reference cannot tell from zero, and what is dissipated
-// never comes back.
+// A nearly inextensible cloth falls onto a sphere with friction: with each halving of the step the
+// error falls to the reference's uncertainty, and dissipated energy never comes back.
 TEST_P(DrapeErrors, FallWithTheStepToTheReferencesGap) {
   if (inextensible::testing::sanitized) GTEST_SKIP() << "too slow with sanitizers";
   RunLimits limits{.timed = false};
@@ -134,8 +133,8 @@ INSTANTIATE_TEST_SUITE_P(ContactMethods, DrapeErrors,
                                            "jacobi", "implicit_springs"),
                          inextensible::names::contestant_name);
 
-// Edges that shake between limits of 10 % bring energy back step by step.
-TEST(EnergyRise, OfAShakingClothFailsIt) {
+// Edges that shake between limits of 10 % return energy step by step.
+TEST(EnergyRise, FailsAShakingCloth) {
   PointSpec spec = spec_at("drape", {{"n", 15}}, "fast_projection", 1.0 / 1600);
   spec.strain_limit = 0.1;
   const PointResult point = run_point(spec, {.timed = false});
@@ -179,7 +178,7 @@ TEST(QuietSamples, NoMoreThanAQuarterOfAllAreTakenAgain) {
   EXPECT_EQ(budget.most(), QuietProbe::most_retaken);
 }
 
-TEST(QuietSamples, WhatIsUsualIsLearntAnew) {
+TEST(QuietSamples, TheUsualTimeIsLearnedAgain) {
   double now = 1;
   QuietProbe probe([&now] { return now; });
   probe.look();

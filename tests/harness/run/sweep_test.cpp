@@ -84,8 +84,7 @@ TEST(StepSearch, RunsFromCoarseToFineAsLongAsThatIsOfUse) {
   }
 }
 
-// Between the rungs that halve: the best of all steps is found, whichever it is, and no run is made
-// twice.
+// The best step is found even between rungs that halve, and no run is made twice.
 TEST(StepSearch, RefinesTheBestStepByFactorsOfOnePointTwo) {
   Suite suite = suite_of_chain({0.01});
   suite.sweeps[0].refine = true;
@@ -101,8 +100,7 @@ TEST(StepSearch, RefinesTheBestStepByFactorsOfOnePointTwo) {
   }
 }
 
-// Every step that was tried is in the outcome; those that may be best, or all of a step sweep, have
-// all samples.
+// Every step tried is in the outcome; candidates, or all points of a step sweep, have all samples.
 TEST(StepSearch, SamplesWhatMayBeBest) {
   for (const std::string kind : {"strain", "step", "every step"}) {
     Suite suite = suite_of_chain({0.1, 0.01});
@@ -121,7 +119,7 @@ TEST(StepSearch, SamplesWhatMayBeBest) {
   }
 }
 
-// First runs say 1/200 s is best; the next ones show that it was luck, and 1/400 s that was not.
+// By first samples 1/200 s is best, by all of them 1/400 s.
 TEST(StepSearch, TheBestStepIsChosenByAllSamplesOfThoseThatAreClose) {
   Suite suite = suite_of_chain({0.01});
   suite.reps = 5;
@@ -153,10 +151,9 @@ TEST(StepSearch, SaysWhereTheBestStepIsAnEndOfTheLadder) {
   expect(100, "");
 }
 
-// Two contestants, one 100 times as fast as the other one: that one is stopped at 30 times, at each
-// limit again, and none is called hopeless for it; with --untimed, which runs end must not depend
-// on the machine.
-TEST(StepSearch, StopsWhoIsFarBehindTheFastestOfAPlaceUnlessTimesAreNotUsed) {
+// The slower contestant needs 100 times the other's time: it is stopped at 30 times, at each limit
+// again. With --untimed, which runs finish must not depend on the machine.
+TEST(StepSearch, StopsRunsFarBehindTheFastestUnlessTimesAreNotUsed) {
   for (const bool timed : {true, false}) {
     Suite suite = suite_of_chain({0.1, 0.01});
     suite.sweeps[0].contestants.push_back({"jacobi", "jacobi"});
@@ -178,8 +175,7 @@ TEST(StepSearch, StopsWhoIsFarBehindTheFastestOfAPlaceUnlessTimesAreNotUsed) {
   }
 }
 
-// A solver is skipped at the next limit only where all of its steps timed out: one that was refused
-// at some of them may get through there.
+// A solver that also failed otherwise may succeed at the next limit.
 TEST(StepSearch, SkipsATighterLimitOnlyAfterNothingButTimeouts) {
   for (const bool all : {true, false}) {
     FakeMachine machine{parabola(200), [all](const PointSpec& spec) {
