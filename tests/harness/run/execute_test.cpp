@@ -1,4 +1,4 @@
-// Points in child processes: whatever a child does to itself is one point's status.
+// Runs in child processes: whatever a child does to itself becomes its run's status.
 #include "harness/run/execute.h"
 
 #include <gtest/gtest.h>
@@ -115,8 +115,8 @@ TEST(Isolation, ARunBeyondItsMemoryIsOutOfMemory) {
   EXPECT_EQ(point.status, PointStatus::out_of_memory) << point.detail;
 }
 
-// A child that sleeps; a series of children that are done before they are asked whether to go on;
-// and as a scheduler cancels a job: every process gets the signal, the child may be the first.
+// A child that sleeps; children that finish before they are asked; and children that get the signal
+// first, as when a scheduler cancels a job.
 TEST(Isolation, AnInterruptEndsTheChildAtOnceAndNoOtherIsMade) {
   RunLimits limits;
   int asked = 0;

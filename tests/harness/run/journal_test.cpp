@@ -1,4 +1,4 @@
-// Journals and shards: whatever a sweep is cut into, its parts are the whole.
+// Journals and shards: however a sweep is divided, its parts make up the whole.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -31,7 +31,7 @@ Suite suite_of(const std::string& axis) {
   return parse_suite(suite.dump(), "test");
 }
 
-// Times depend on what is run alone; runs fail now and then.
+// Times depend only on what is run; some runs fail.
 FakeMachine hashing_machine() {
   const auto hash = [](const PointSpec& spec) { return std::hash<std::string>{}(key_of(spec)); };
   FakeMachine machine{
@@ -111,7 +111,7 @@ TEST_F(JournalTest, ACorruptedLineInTheMiddleIsToldByNumberAndTheOthersStand) {
   EXPECT_EQ(journal.damage(), "");
 }
 
-// A journal without its failures, and one that is made from the result file.
+// A journal without its failures, and one made from the result file.
 TEST_F(JournalTest, RemembersAllButFailuresAndAsMuchOfAResultFile) {
   const Suite suite = suite_of("strain");
   int runs = 0;
