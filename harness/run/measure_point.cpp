@@ -168,7 +168,7 @@ void measure(PointResult& point, const PointRunner& runner, const inextensible::
   point.detail = last.detail;
 }
 
-void add_sample(PointResult& more, const RunLimits& limits) {
+void take_sample(PointResult& more, const RunLimits& limits) {
   const PointResult& point = *limits.sample_of;
   inextensible::Settings settings = point.spec.settings;
   if (point.stiffness) settings["stiffness"] = *point.stiffness;
@@ -219,7 +219,7 @@ PointResult run_point(const PointSpec& spec, const RunLimits& limits) {
   reset_peak_rss();
   try {
     if (limits.sample_of) {
-      add_sample(point, limits);
+      take_sample(point, limits);
     } else if (limits.look) {
       look(point, limits);
     } else {

@@ -23,7 +23,7 @@ constexpr double first_reach = 0.3;  // standard deviation of the first moves, o
 constexpr double last_reach = 0.15;  // times the first
 constexpr double least_gain = 0.05;  // the result must be faster than the defaults by more
 constexpr std::uint64_t seed = 1;
-constexpr int digits = 3;  // of values: two more than the search can tell apart
+constexpr int value_digits = 3;  // two more than the search can tell apart
 
 double shift(const TunedNumber& number) {
   return number.whole && number.range.least < 1 ? 1 - number.range.least : 0;
@@ -34,8 +34,8 @@ bool logarithmic(const TunedNumber& number) {
   return least > 0 && (number.range.largest + shift(number)) / least >= 10;
 }
 
-// On this scale a setting's values are searched evenly.
-double scaled(const TunedNumber& number, double value) {
+// A value on the scale on which the search is uniform.
+double on_scale(const TunedNumber& number, double value) {
   if (number.range.bound) return -std::log(*number.range.bound - value);
   return logarithmic(number) ? std::log(value + shift(number)) : value;
 }
@@ -305,17 +305,17 @@ std::vector<TunedNumber> tunable_numbers(const inextensible::Backend& backend) {
 
 double position_of(const TunedNumber& number, double value) {
   const auto& [least, largest, bound] = number.range;
-  const double low = scaled(number, least), high = scaled(number, largest);
-  return (scaled(number, std::clamp(value, least, largest)) - low) / (high - low);
+  const double low = on_scale(number, least), high = on_scale(number, largest);
+  return (on_scale(number, std::clamp(value, least, largest)) - low) / (high - low);
 }
 
 double value_at(const TunedNumber& number, double position) {
   const auto& [least, largest, bound] = number.range;
-  const double at = std::lerp(scaled(number, least), scaled(number, largest), position);
-  if (bound) return std::clamp(*bound - rounded_to(std::exp(-at), digits), least, largest);
+  const double at = std::lerp(on_scale(number, least), on_scale(number, largest), position);
+  if (bound) return std::clamp(*bound - rounded_to(std::exp(-at), value_digits), least, largest);
   const double value = logarithmic(number) ? std::exp(at) - shift(number) : at;
   if (number.whole) return std::clamp(std::round(value), std::ceil(least), std::floor(largest));
-  return std::clamp(rounded_to(value, digits), least, largest);
+  return std::clamp(rounded_to(value, value_digits), least, largest);
 }
 
 TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene, TuneOptions options,
