@@ -161,9 +161,8 @@ Trials measure(const Suite& suite, const Wish& wish, const ChooseLimits& limits,
                              : to_string(point.status))
               << std::endl;
   };
-  SweepRunners runners;
-  runners.references = std::move(references);
-  return try_contestants(suite, plan(suite, {}), wish, limits, events, isolated(runners, 0));
+  return try_contestants(suite, plan(suite, {}), wish, limits, events,
+                         with_references(isolated(run_point, 0), std::move(references)));
 }
 
 struct Choose : SceneOptions {

@@ -8,6 +8,7 @@
 #include "harness/points/context.h"
 #include "harness/points/point_json.h"
 #include "harness/points/suite.h"
+#include "harness/run/execute.h"
 #include "harness/run/measure_point.h"
 
 namespace harness {
@@ -68,9 +69,7 @@ struct PointVerb {
   PointResult timed(const PointSpec& spec, const RunLimits& limits) const {
     const OutputToError no_output;  // a line printed by the solver would be read as a result
     PointResult point = run_point(spec, limits);
-    RunLimits of_more = limits;
-    of_more.sample_of = &point;
-    for (int i = 1; i < samples && point.ok(); ++i) append(run_point(spec, of_more), point);
+    for (int i = 1; i < samples && point.ok(); ++i) add_sample(point, run_point, limits);
     return point;
   }
 

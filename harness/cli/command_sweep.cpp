@@ -21,17 +21,16 @@ using nlohmann::json;
 constexpr int most_timed_vertices = 20000;
 
 // Probes the machine's noise between runs, and retakes disturbed samples while the budget lasts.
-SweepRunners watched(const SweepRunners& inner, NoiseProbe& noise_probe, bool timed) {
+Runner watched(const Runner& inner, NoiseProbe& noise_probe, bool timed) {
   const auto budget = std::make_shared<RetakeBudget>();
-  return wrapped(inner,
-                 [timed, budget, &noise_probe](const auto&, RunLimits limits, const auto& call) {
-                   limits.timed = timed;
-                   limits.most_retaken = budget->most();
-                   noise_probe.sample_if_due();
-                   auto result = call(limits);
-                   budget->add(result.samples.size(), result.retaken);
-                   return result;
-                 });
+  return [=, &noise_probe](const PointSpec& spec, RunLimits limits) {
+    limits.timed = timed;
+    limits.most_retaken = budget->most();
+    noise_probe.sample_if_due();
+    PointResult result = inner(spec, limits);
+    budget->add(result.samples.size(), result.retaken);
+    return result;
+  };
 }
 
 void warn_if_busy(const json& context) {
@@ -137,9 +136,7 @@ struct SweepCommand : SweepOptions, OutputOptions {
     json context = context_of_suite();
     const auto run = [&](Journal& journal, const json& before) -> Finished {
       if (rerun_failed) forget_failures(journal);
-      SweepRunners runners;
       const auto references = ReferenceFolder::usual();
-      runners.references = references;
       report_missing_references(searches, *references);
       std::optional<TimingLock> lock;
       if (!untimed) lock.emplace(!no_wait);
@@ -151,8 +148,10 @@ struct SweepCommand : SweepOptions, OutputOptions {
       Progress progress;
       NoiseProbe noise_probe;
       noise_probe.sample();
-      runners = journaled(watched(isolated(runners, memory), noise_probe, !untimed), journal);
-      const SweepOutcome outcome = run_sweep(suite, searches, shown(progress), runners);
+      const Runner watching = watched(isolated(run_point, memory), noise_probe, !untimed);
+      const SweepOutcome outcome =
+          run_sweep(suite, searches, shown(progress),
+                    with_references(journaled(watching, journal), references));
       noise_probe.sample();
       context["sentinel"] = noise_probe.to_json();
       return {result_document(context, suite, typed, outcome.complete, outcome.points,

@@ -115,7 +115,7 @@ struct Tune {
   }
 
   // Stores the result in `entries`. False: its entry is up to date.
-  bool tune_one(const SweepSpec& on, const std::string& name, const SweepRunners& runners,
+  bool tune_one(const SweepSpec& on, const std::string& name, const Runner& run,
                 Entries& entries) const {
     const auto known = std::ranges::find_if(entries, [&](const TunedEntry& entry) {
       return entry.kind == find_scene(on.scene)->kind() && entry.solver == name;
@@ -125,13 +125,13 @@ struct Tune {
       if (!there)
         throw UsageError(name + " has no settings by today's rule yet: bench tune --scene " +
                          on.scene + " --solver " + name);
-      const TunedEntry found = tune_solver(name, on, tuning(), runners, &*known);
+      const TunedEntry found = tune_solver(name, on, tuning(), run, &*known);
       print(found);
       add_places(*known, found.places);
       return true;
     }
     if (there && !again) return false;
-    TunedEntry entry = tune_solver(name, on, tuning(), runners);
+    TunedEntry entry = tune_solver(name, on, tuning(), run);
     const json machine = machine_context();
     const json& build = machine.at("build");
     entry.context = {{"date", machine.at("date")},
@@ -157,14 +157,12 @@ struct Tune {
       entries = parse_tuned(read_file(file, "file of tuned settings"), file).entries;
     check_writable(file);
     const TimingLock lock(!no_wait);
-    SweepRunners runners;
-    runners.references = ReferenceFolder::usual();
-    runners = isolated(runners, 0);
+    const Runner run = with_references(isolated(run_point, 0), ReferenceFolder::usual());
     std::cout
         << "kind           solver                             size  limit   gain   settings\n";
     for (const SweepSpec& on : chosen) {
       for (const std::string& name : chosen_solvers(solver, on)) {
-        if (tune_one(on, name, runners, entries)) write_entries(file, entries);
+        if (tune_one(on, name, run, entries)) write_entries(file, entries);
       }
     }
     std::cout << "\nwritten:\n" << file << std::endl;

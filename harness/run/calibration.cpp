@@ -17,15 +17,15 @@ namespace {
 constexpr double close_enough = 0.85;  // of the limit
 // Between it and the limit, from the permitted side.
 const double aim = 0.5 * std::log(close_enough);
-// In decades; where a run was cut short, its strain would have been more.
+// In decades; the strain of a run that was cut short would have been larger.
 constexpr double least_stride_from_cut_short = 0.4;
 constexpr double stride_from_failure = 0.3;  // in decades
 
-// What a strand of springs bears, in what falls to it of the forces of the scene: strain = tension
-// / EA. On a falling chain the tension is a few times its weight.
+// The tension of a strand of springs over its share of the scene's forces; strain = tension / EA.
+// In a falling chain the tension is a few times its weight.
 constexpr double tension_over_force = 5;
 
-// Runs that came to their end. What else they did wrong is said of the measured run.
+// Runs that reached their end. The measured run reports what else went wrong.
 bool strain_counts(PointStatus status) {
   return status == PointStatus::ok || status == PointStatus::strain_missed ||
          status == PointStatus::energy_gained || status == PointStatus::motion_lost;
@@ -67,8 +67,7 @@ class StiffnessSearch {
            !timed_out_;
   }
 
-  // log(max strain / limit). Of a run that failed, its strain up to there tells the side, not how
-  // far.
+  // log(max strain / limit). For a run that failed, only the sign means anything.
   double excess(double log_stiffness) {
     const auto [known, fresh] = known_.try_emplace(log_stiffness, 0.0);
     if (fresh) known->second = evaluate(std::pow(10, log_stiffness));

@@ -31,14 +31,14 @@ struct Calibration {
 // Finds the stiffness EA at which the run's own maximum strain just meets the limit. Strain is
 // tension over stiffness, and tension hardly depends on stiffness: that law leads from a guess to a
 // bracket, and Brent's method (GSL) on log strain / limit over log EA does the rest. A run that
-// times out says nothing of its strain: it ends the search, without a stiffness and with the status
-// `skipped`. A run that fails otherwise is never the answer; springs may be too stiff for Newton's
-// iteration, or too soft, and both are tried. guess: EA, N; run: one with this stiffness, N.
+// times out says nothing about its strain: it ends the search without a stiffness, with the status
+// `skipped`. After any other failure the search tries stiffer and softer springs, since Newton's
+// iteration may fail on either side. guess: EA, N.
 Calibration calibrate_stiffness(double strain_limit, double guess,
                                 const std::function<CalibrationTrial(double stiffness)>& run);
 
-// s: how long work that springs have counted takes on a usual machine, within a factor of two. It
-// is the same each time, as the clock's time is not.
+// s: how long a spring method's counted work takes on a usual machine, within a factor of two.
+// Unlike measured time it is always the same.
 double nominal_seconds(const inextensible::WorkCounters& work, int edges);
 
 // N: where a search may begin without a neighbour's stiffness to go by.

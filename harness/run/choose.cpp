@@ -36,7 +36,7 @@ std::function<bool()> stop_at(const ChooseLimits& limits, double share) {
 }
 
 std::vector<PointResult> screen_all(const std::vector<Search>& searches, const ChooseLimits& limits,
-                                    const SweepRunners& runners) {
+                                    const Runner& run) {
   const double most = screening_share * limits.seconds / static_cast<double>(searches.size());
   const auto stop = stop_at(limits, search_share);
   std::vector<PointResult> screened(searches.size());
@@ -45,12 +45,10 @@ std::vector<PointResult> screen_all(const std::vector<Search>& searches, const C
     spec.step = searches[i].ladder[searches[i].ladder.size() / 2];
     if (stop()) continue;
     try {
-      screened[i] = runners.run(spec,
-                                {.timeout = most,
-                                 .hopeless = std::min(usual_look, most),
-                                 .interrupted = stop,
-                                 .look = true},
-                                {});
+      screened[i] = run(spec, {.timeout = most,
+                               .hopeless = std::min(usual_look, most),
+                               .interrupted = stop,
+                               .look = true});
     } catch (const Interrupted&) {
       screened[i].detail = "its first step took too long";
     }
@@ -69,13 +67,13 @@ std::vector<PointResult*> fastest_runs(std::vector<PointResult>& points, const W
 }
 
 void repeat_finalists(std::vector<PointResult>& points, const Suite& suite, const Wish& wish,
-                      const ChooseLimits& limits, const SweepRunners& runners) {
+                      const ChooseLimits& limits, const Runner& run) {
   const auto stop = stop_at(limits, 1);
   try {
     for (std::size_t round = 1; round < final_samples; ++round) {
       for (PointResult* point : fastest_runs(points, wish)) {
         if (stop()) return;
-        runners.add_sample(*point, {.timeout = suite.timeout, .interrupted = stop});
+        add_sample(*point, run, {.timeout = suite.timeout, .interrupted = stop});
       }
     }
   } catch (const Interrupted&) {
@@ -102,24 +100,23 @@ std::vector<std::size_t> ladder_order(const std::vector<PointResult>& screened) 
 }
 
 Trials try_contestants(const Suite& suite, const std::vector<Search>& searches, const Wish& wish,
-                       const ChooseLimits& limits, const SweepEvents& events,
-                       const SweepRunners& runners) {
+                       const ChooseLimits& limits, const SweepEvents& events, const Runner& run) {
   Trials trials;
-  trials.screened = screen_all(searches, limits, runners);
+  trials.screened = screen_all(searches, limits, run);
   std::vector<Search> ordered;
   for (const std::size_t i : ladder_order(trials.screened)) ordered.push_back(searches[i]);
   SweepEvents until = events;
   until.interrupted = stop_at(limits, search_share);
   // On a busy machine, taking disturbed samples again would take most of the time. Finalists have
   // more samples.
-  SweepOutcome outcome = run_sweep(
-      suite, ordered, until, wrapped(runners, [](const auto&, RunLimits own, const auto& call) {
-        own.most_retaken = 0;
-        return call(own);
-      }));
+  const auto run_once = [&run](const PointSpec& spec, RunLimits own) {
+    own.most_retaken = 0;
+    return run(spec, own);
+  };
+  SweepOutcome outcome = run_sweep(suite, ordered, until, run_once);
   trials.points = std::move(outcome.points);
   trials.complete = outcome.complete;
-  repeat_finalists(trials.points, suite, wish, limits, runners);
+  repeat_finalists(trials.points, suite, wish, limits, run);
   if (limits.interrupted()) throw Interrupted();
   return trials;
 }

@@ -1,5 +1,5 @@
-// Which solver and step to take for a scene: tries the contestants within a given time, and picks
-// from what their runs took.
+// Chooses a solver and step for a scene: tries the contestants within a given time and picks the
+// fastest that is accurate enough.
 #pragma once
 
 #include <functional>
@@ -12,8 +12,8 @@
 namespace harness {
 
 struct Wish {
-  double error = headline_error;  // over the scene's size; any_motion: whatever it looks like
-  double rate = 60;               // frames a second: one that frame times are kept of
+  double error = headline_error;  // over the scene's size; any_motion: no limit
+  double rate = 60;               // frames a second, one of frame_rates
   double budget = 0;              // s of computing time a frame; 0: none is given
 };
 
@@ -37,8 +37,7 @@ std::vector<std::size_t> ladder_order(const std::vector<PointResult>& screened);
 // samples of the fastest runs. A run in progress is stopped when the time is over. Throws
 // Interrupted if limits.interrupted() says so, whatever has been found.
 Trials try_contestants(const Suite& suite, const std::vector<Search>& searches, const Wish& wish,
-                       const ChooseLimits& limits, const SweepEvents& events,
-                       const SweepRunners& runners);
+                       const ChooseLimits& limits, const SweepEvents& events, const Runner& run);
 
 struct Pick {
   const PointResult* point = nullptr;
@@ -46,15 +45,15 @@ struct Pick {
   double error = unknown;  // over the scene's size; unknown: nothing says
 };
 
-// How much of a budget the frames of a run keep: 99 % of them, half of them, or fewer.
+// How many of a run's frames keep the budget: 99 % of them, half of them, or fewer.
 enum class Kept { nearly_all, half, fewer };
 
-// The fastest within strain limit and error of those that keep most of the budget; `not_by`: of
-// other contestants.
+// The fastest run within strain limit and error among those that keep the budget best. not_by: a
+// contestant to leave out.
 std::optional<Pick> fastest(const std::vector<PointResult>& points, const Wish& wish,
                             const std::string& not_by = {});
 
-// A run that keeps the budget in fewer than half of its frames is not to be taken.
+// A run that keeps the budget in fewer than half of its frames is not recommended.
 struct Recommendation {
   std::optional<Pick> best, next;  // next: of another contestant, whatever the budget
   Kept budget = Kept::nearly_all;  // without one: nearly_all
@@ -63,7 +62,7 @@ struct Recommendation {
 };
 Recommendation recommend(const std::vector<PointResult>& points, const Wish& wish);
 
-// Why a contestant has no run within strain limit and error; empty: it has one.
+// Why a contestant has no run within strain limit and error; "": it has one.
 std::string why_not(const std::string& contestant, const Trials& trials, const Wish& wish);
 
 }  // namespace harness

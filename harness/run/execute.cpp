@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "harness/base/child_process.h"
 #include "harness/base/text.h"
@@ -73,91 +74,100 @@ std::vector<Samples> cut_off_repetitions(PointResult& point) {
   return repetitions;
 }
 
-// A search for a stiffness goes another way from another start, where a neighbouring point failed
-// then and does not now: its run is another one.
+// A search for a stiffness that began elsewhere, since a neighbouring point failed then but not
+// now, is another run.
 bool same_start(const PointResult& point, std::optional<double> guess) {
   if (!point.ok() || !point.stiffness) return true;
   return guess ? *guess == point.calibration_guess : std::isnan(point.calibration_guess);
 }
 
-// Reads the reference, once and for all children, so that the result names it.
+// The parent reads the reference once for all children, so that the result names it.
 void find_reference(const RunLimits& limits, const PointSpec& spec) {
   if (limits.references) limits.references->find(spec.scene, spec.scene_parameters);
 }
 
-// Runs that follow each other are mostly of one scene: the parent builds it for all their children,
-// since the grid of a body takes longer than many a run.
+// Consecutive runs are mostly of one scene: the parent builds it for all their children, since
+// the grid of a body takes longer than many a run.
 class LastScene {
  public:
   // Null: it cannot be built, and the run itself says why.
   const Scene* of(const PointSpec& spec) {
-    if (scene_ && name_ == spec.scene && parameters_ == spec.scene_parameters) return &*scene_;
+    const std::pair key(spec.scene, spec.scene_parameters);
+    if (scene_ && key_ == key) return &*scene_;
     scene_.reset();
     try {
       scene_ = find_scene(spec.scene)->build(spec.scene_parameters);
     } catch (const std::exception&) {  // a file that is gone, or too little memory, too
       return nullptr;
     }
-    name_ = spec.scene;
-    parameters_ = spec.scene_parameters;
+    key_ = key;
     return &*scene_;
   }
 
  private:
-  std::string name_;
-  SceneParameters parameters_;
+  std::pair<std::string, SceneParameters> key_;
   std::optional<Scene> scene_;
 };
 
 }  // namespace
 
-SweepRunners isolated(const SweepRunners& inner, double memory) {
-  return wrapped(inner, [memory, scenes = std::make_shared<LastScene>()](
-                            const PointSpec& spec, const RunLimits& limits, const auto& call) {
-    find_reference(limits, spec);
-    // Where memory is limited, building is part of what is.
-    const Scene* scene = memory > 0 ? nullptr : scenes->of(spec);
-    return in_child(
-        {limits.timeout, memory, limits.interrupted},
-        [&](Heartbeat& heartbeat) {
-          RunLimits own = limits;
-          own.interrupted = nullptr;  // that is the parent's business
-          own.heartbeat = &heartbeat;
-          own.scene = scene;
-          return to_json(call(own));
-        },
-        point_of, [&](const ChildOutcome& child) { return lost(spec, child, limits.timeout); });
-  });
+void add_sample(PointResult& point, const Runner& run, RunLimits limits) {
+  limits.sample_of = &point;
+  append(run(point.spec, limits), point);
 }
 
-SweepRunners journaled(const SweepRunners& inner, Journal& journal) {
+Runner with_references(const Runner& inner, std::shared_ptr<ReferenceFolder> references) {
+  return [=](const PointSpec& spec, RunLimits limits) {
+    limits.references = references;
+    return inner(spec, limits);
+  };
+}
+
+Runner isolated(const Runner& inner, double memory) {
+  return
+      [=, scenes = std::make_shared<LastScene>()](const PointSpec& spec, const RunLimits& limits) {
+        find_reference(limits, spec);
+        // A limit on memory includes the scene.
+        const Scene* scene = memory > 0 ? nullptr : scenes->of(spec);
+        return in_child(
+            {limits.timeout, memory, limits.interrupted},
+            [&](Heartbeat& heartbeat) {
+              RunLimits own = limits;
+              own.interrupted = nullptr;  // that is the parent's business
+              own.heartbeat = &heartbeat;
+              own.scene = scene;
+              return to_json(inner(spec, own));
+            },
+            point_of, [&](const ChildOutcome& child) { return lost(spec, child, limits.timeout); });
+      };
+}
+
+Runner journaled(const Runner& inner, Journal& journal) {
   const auto samples_of_key = std::make_shared<std::map<std::string, int>>();
-  return {[=, run = inner.run, &journal](const PointSpec& spec, const RunLimits& limits,
-                                         std::optional<double> guess) {
-            const std::string key = key_of(spec);
-            if (limits.sample_of) {
-              const auto take = [&] {
-                const Samples taken = run(spec, limits, guess);
-                return to_json(taken);
-              };
-              const std::string repetition = key_of_repetition(key, ++(*samples_of_key)[key]);
-              PointResult more(spec);
-              append(samples_of(journal.once(repetition, take)), more);
-              return more;
-            }
-            if (const json* known = journal.find(key)) {
-              PointResult point = point_of(*known);
-              if (same_start(point, guess)) {
-                find_reference(limits, spec);
-                return point;
-              }
-              forget_point(key, journal);
-            }
-            PointResult point = run(spec, limits, guess);
-            journal.add(key, to_json(point));
-            return point;
-          },
-          inner.references};
+  return [=, &journal](const PointSpec& spec, const RunLimits& limits) {
+    const std::string key = key_of(spec);
+    if (limits.sample_of) {
+      const auto take = [&] {
+        const Samples taken = inner(spec, limits);
+        return to_json(taken);
+      };
+      const std::string repetition = key_of_repetition(key, ++(*samples_of_key)[key]);
+      PointResult more(spec);
+      append(samples_of(journal.once(repetition, take)), more);
+      return more;
+    }
+    if (const json* known = journal.find(key)) {
+      PointResult point = point_of(*known);
+      if (same_start(point, limits.stiffness_guess)) {
+        find_reference(limits, spec);
+        return point;
+      }
+      forget_point(key, journal);
+    }
+    PointResult point = inner(spec, limits);
+    journal.add(key, to_json(point));
+    return point;
+  };
 }
 
 void add_runs_of(const json& result, Journal& journal) {

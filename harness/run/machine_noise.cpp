@@ -43,8 +43,7 @@ QuietProbe& quiet_probe() {
   return probe;
 }
 
-// Long enough, 50 ms or so, that a processor shared with others is seen: they get turns of some
-// milliseconds.
+// Takes about 50 ms, to notice other users of the processor, who get turns of some milliseconds.
 void NoiseProbe::sample() {
   constexpr int runs = 50;
   work_();

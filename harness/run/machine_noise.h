@@ -1,5 +1,5 @@
-// What else the machine does while times are taken, by the time of a fixed piece of work: samples
-// that something disturbed are taken again, and a sweep says how noisy it was.
+// How busy the machine is otherwise, from the time of a fixed piece of work: disturbed samples are
+// taken again, and a sweep reports how noisy the machine was.
 #pragma once
 
 #include <algorithm>
@@ -26,10 +26,10 @@ class QuietProbe {
   using Work = std::function<double()>;  // does the work; s that it took
   explicit QuietProbe(Work work = fixed_work) : work_(std::move(work)) {}
 
-  // Works once; s. The first look of all works several times, to know what is usual.
+  // Works once; s. The very first look works several times, to learn what is usual.
   double look();
-  // What a long look around took at least, s. It replaces what was seen before the last of these: a
-  // processor changes its clock rate for good, too.
+  // least: the least time of a long look, s. It replaces what was seen before the last long look,
+  // since a processor may change its clock rate for good.
   void renew(double least) { least_ = std::min(std::exchange(renewed_, least), least); }
   bool disturbed(double seconds) const { return seconds > disturbed_from * least_; }
 
@@ -39,11 +39,11 @@ class QuietProbe {
   double renewed_ = std::numeric_limits<double>::infinity();  // s, by renew()
 };
 
-// That of this process and of those that it forks.
+// The probe of this process and its children.
 QuietProbe& quiet_probe();
 
-// How often samples of a sweep may still be taken again. On a machine that is never quiet it would
-// only take time: so not any more when more than a quarter of all samples were.
+// How often samples of a sweep may still be taken again: no longer once more than a quarter of them
+// were, since on a machine that is never quiet this only takes time.
 class RetakeBudget {
  public:
   int most() const { return 4 * retaken_ > samples_ + granted ? 0 : QuietProbe::most_retaken; }
@@ -57,9 +57,9 @@ class RetakeBudget {
   double samples_ = 0, retaken_ = 0;
 };
 
-// The first of take()'s samples whose neighbouring looks are both undisturbed; after `most`
-// tries more the one whose worse look was the least. again(sample): whether another one may be
-// taken instead. retaken: how many were dropped before. With how many were dropped in all.
+// The first of take()'s samples with undisturbed looks before and after it; after `most` more tries
+// the one whose worse look was the shortest. Also returns how many were dropped in all.
+// again(sample): whether it may be replaced; retaken: how many were dropped before.
 template <class Take, class Again>
 auto take_quietly(QuietProbe& probe, Take take, Again again, int retaken = 0,
                   int most = QuietProbe::most_retaken) {
@@ -80,10 +80,10 @@ auto take_quietly(QuietProbe& probe, Take take, Again again, int retaken = 0,
   }
 }
 
-// Looks around every minute while a sweep runs.
+// Measures the noise every minute while a sweep runs.
 class NoiseProbe {
  public:
-  // Spread (largest over smallest time, less 1) from which on the machine counts as noisy.
+  // The machine counts as noisy from this spread (largest over smallest time, less 1).
   static constexpr double noisy_from = 0.1;
 
   explicit NoiseProbe(QuietProbe::Work work = fixed_work) : work_(std::move(work)) {}

@@ -51,18 +51,18 @@ bool may_be_retaken(const Batch& batch) { return batch.ok() && batch.seconds < l
 
 // Takes samples of one point.
 struct Sampler {
-  const PointResult& point;  // with the samples before
-  PointRunner& runner;
+  const PointResult& point;  // with the previous samples
+  const PointRunner& runner;
   const inextensible::Settings& settings;
   // Reads of the clock between phases are part of the time of a short step, so that it is timed
   // without them, and the phases in runs of their own.
   bool short_steps;
   const RunLimits& limits;
-  Samples taken = {};
+  Samples& taken;                          // gets the samples
   inextensible::PhaseSeconds phases = {};  // of the filter sample
 
-  // Takes a sample; returns the last run, which may have failed. retaken: tries that were dropped
-  // before.
+  // Takes a sample and returns the last run, which may have failed. retaken: earlier tries that
+  // were dropped.
   Run add(int retaken) {
     if (short_steps) {
       Batch in_phases = batch(least_filter_sample, true);
@@ -88,11 +88,10 @@ struct Sampler {
     return std::move(sample.last);
   }
 
-  // As many runs as take at least that long together, s; each has the whole time-out to itself.
+  // As many runs as take at least that long together, s.
   Batch batch(double at_least, bool with_phases) {
     Batch batch;
     do {
-      runner.restart_clock(RunPart::measured);
       batch.add(runner.run(settings, false, diverged_strain, with_phases));
     } while (limits.timed && batch.ok() && batch.seconds < at_least);
     return batch;
@@ -108,9 +107,15 @@ struct Sampler {
   }
 };
 
-// The stiffness that a point's springs need, in its settings too. False: there is none, and the
-// point says why.
-bool calibrate(PointResult& point, PointRunner& runner, inextensible::Settings& settings,
+// Whether the strain limit must be met by a stiffness that is still to be found.
+bool needs_stiffness(const PointRunner& runner) {
+  return runner.backend().strain_control == inextensible::StrainControl::stiffness &&
+         !runner.spec().settings.contains("stiffness");
+}
+
+// Finds the stiffness that a point's springs need, and adds it to the settings. False: there is
+// none, and the point says why.
+bool calibrate(PointResult& point, const PointRunner& runner, inextensible::Settings& settings,
                std::optional<double> guess) {
   const PointSpec& spec = point.spec;
   const auto begin = Clock::now();
@@ -119,9 +124,8 @@ bool calibrate(PointResult& point, PointRunner& runner, inextensible::Settings& 
       spec.strain_limit, guess.value_or(first_stiffness(runner.scene(), spec.strain_limit)),
       [&](double stiffness) -> CalibrationTrial {
         settings["stiffness"] = stiffness;
-        runner.restart_clock(RunPart::calibration);  // every run has the whole time-out to itself
-        const Run run =
-            runner.run(settings, true, calibration_cut_short * spec.strain_limit, true, true);
+        const Run run = runner.run(settings, true, calibration_cut_short * spec.strain_limit, true,
+                                   RunPart::calibration);
         return {run.status, run.measures.max_strain, run.seconds, run.detail};
       });
   point.calibration_seconds = since(begin);
@@ -139,11 +143,10 @@ bool calibrate(PointResult& point, PointRunner& runner, inextensible::Settings& 
 // The judged run, and a first sample: that run itself if it is long enough, and nothing disturbed
 // it. Iterates are kept while the solver's clock runs, so that an observed run's time is not its
 // own.
-void measure(PointResult& point, PointRunner& runner, const inextensible::Settings& settings,
+void measure(PointResult& point, const PointRunner& runner, const inextensible::Settings& settings,
              const RunLimits& limits) {
   const bool timed = limits.timed;
   const double before = timed ? quiet_probe().look() : 0;
-  runner.restart_clock(RunPart::measured);
   Batch judged;
   judged.add(runner.run(settings, true, diverged_strain));
   const double after = timed ? quiet_probe().look() : 0;
@@ -153,39 +156,35 @@ void measure(PointResult& point, PointRunner& runner, const inextensible::Settin
   point.linear_solver = judged.last.stepper->linear_solver();
   if (!point.ok()) return;
   const bool short_steps = judged.last.seconds / runner.steps() < shortest_judged_step;
-  Sampler sampler{point, runner, settings, short_steps, limits};
+  Sampler sampler{point, runner, settings, short_steps, limits, point};
   const bool a_sample =
       !judged.last.observed && !short_steps && (!timed || judged.seconds >= least_sample);
   const bool disturbed = timed && limits.most_retaken > 0 && may_be_retaken(judged) &&
                          quiet_probe().disturbed(std::max(before, after));
   const Run last =
       a_sample && !disturbed ? sampler.record(std::move(judged)) : sampler.add(a_sample ? 1 : 0);
-  append(sampler.taken, point);
   if (!point.filter_samples.empty()) point.phases = sampler.phases;
   point.status = last.status;  // without a time it is no result
   point.detail = last.detail;
 }
 
-void add_sample(PointResult& more, const RunLimits& limits) {
+void take_sample(PointResult& more, const RunLimits& limits) {
   const PointResult& point = *limits.sample_of;
   inextensible::Settings settings = point.spec.settings;
   if (point.stiffness) settings["stiffness"] = *point.stiffness;
-  PointRunner runner(point.spec, limits);
+  const PointRunner runner(point.spec, limits);
   const bool short_steps = point.seconds() * point.spec.step < shortest_judged_step;
-  Sampler sampler{point, runner, settings, short_steps, limits};
-  sampler.add(0);
-  append(sampler.taken, more);
+  Sampler{point, runner, settings, short_steps, limits, more}.add(0);
 }
 
-void look(PointResult& point, const RunLimits& limits, std::optional<double> guess) {
+void look(PointResult& point, const RunLimits& limits) {
   const PointSpec& spec = point.spec;
-  using inextensible::StrainControl;
   const PointRunner runner(spec, limits);
-  const StrainControl control = runner.backend().strain_control;
   inextensible::Settings settings = spec.settings;
-  const bool springs = control == StrainControl::stiffness && !settings.contains("stiffness");
+  const bool springs = needs_stiffness(runner);
   if (springs)
-    settings["stiffness"] = guess.value_or(first_stiffness(runner.scene(), spec.strain_limit));
+    settings["stiffness"] =
+        limits.stiffness_guess.value_or(first_stiffness(runner.scene(), spec.strain_limit));
   const Run run = runner.run(settings, true, std::numeric_limits<double>::infinity());
   const auto steps = static_cast<double>(run.stepper->work().steps);
   // The first step sets up what the others use.
@@ -198,36 +197,33 @@ void look(PointResult& point, const RunLimits& limits, std::optional<double> gue
     point.status = run.status;
     point.detail = run.detail;
   } else if (const double strain = run.measures.max_strain;
-             !springs && control != StrainControl::none &&
+             !springs && runner.backend().strain_control != inextensible::StrainControl::none &&
              !(strain <= spec.strain_limit * (1 + 1e-9))) {
     point.status = PointStatus::strain_missed;
     point.detail = "strain " + told_apart(strain, spec.strain_limit);
   }
 }
 
-void run_whole(PointResult& point, const RunLimits& limits, std::optional<double> guess) {
-  PointRunner runner(point.spec, limits);
+void run_whole(PointResult& point, const RunLimits& limits) {
+  const PointRunner runner(point.spec, limits);
   point.steps_planned = runner.steps();
   inextensible::Settings settings = point.spec.settings;
-  const bool needs_stiffness =
-      runner.backend().strain_control == inextensible::StrainControl::stiffness &&
-      !settings.contains("stiffness");
-  if (!needs_stiffness || calibrate(point, runner, settings, guess))
+  if (!needs_stiffness(runner) || calibrate(point, runner, settings, limits.stiffness_guess))
     measure(point, runner, settings, limits);
 }
 
 }  // namespace
 
-PointResult run_point(const PointSpec& spec, const RunLimits& limits, std::optional<double> guess) {
+PointResult run_point(const PointSpec& spec, const RunLimits& limits) {
   PointResult point(spec);
   reset_peak_rss();
   try {
     if (limits.sample_of) {
-      add_sample(point, limits);
+      take_sample(point, limits);
     } else if (limits.look) {
-      look(point, limits, guess);
+      look(point, limits);
     } else {
-      run_whole(point, limits, guess);
+      run_whole(point, limits);
     }
   } catch (const std::bad_alloc&) {
     point.status = PointStatus::out_of_memory;

@@ -14,40 +14,39 @@ struct Heartbeat;
 struct Scene;
 
 inline constexpr double least_sample = 0.02;  // s: a thousand times a block of steps
-// s. Two looks of a millisecond say little of what happens in between; and what happens for
-// milliseconds hardly shows.
+// s. In longer samples, disturbances of milliseconds hardly show, and two looks of a millisecond
+// say little about the time between them.
 inline constexpr double longest_retaken = 0.25;
 
 inline constexpr double usual_look = 0.1;  // s
 
-// What a point is at; a heartbeat's part.
+// A heartbeat's part.
 enum class RunPart { measured, calibration };
 
 struct RunLimits {
   double timeout = 60;  // s of wall time, for each run of a calibration and the measured one
-  // s of stepping after which a run cannot be the best any more; of a calibration's run nominal
-  // ones, so that a stiffness is found or not whatever else the machine does
+  // s of stepping after which a run cannot be the best any more. A calibration's run counts nominal
+  // seconds, so that its result does not depend on what else the machine does.
   double hopeless = 1e300;
   std::function<bool()> interrupted = nullptr;            // asked after every step
   std::shared_ptr<ReferenceFolder> references = nullptr;  // null: no errors against references
-  const Scene* scene = nullptr;    // the spec's, where it has been built already
-  Heartbeat* heartbeat = nullptr;  // notified of every step; see child_process.h
-  int most_retaken = 3;            // times that a sample may be taken again
-  bool timed = true;               // false: times are not used, and one run is a sample
-  // If it is not null, all that is wanted is one sample more of this point: the judge stays out.
+  const Scene* scene = nullptr;                // the spec's, where it has been built already
+  std::optional<double> stiffness_guess = {};  // N; where a calibration begins, if one is needed
+  Heartbeat* heartbeat = nullptr;              // notified of every step; see child_process.h
+  int most_retaken = 3;                        // times that a sample may be taken again
+  bool timed = true;                           // false: times are not used, and one run is a sample
+  // Not null: only one more sample of this point is taken, without the judge.
   const PointResult* sample_of = nullptr;
-  // true: only steps for about `hopeless` seconds. The point's one sample is their time, where one
-  // step succeeded, and its status is ok if they met the strain limit. Springs have the stiffness
-  // that a calibration begins with; their strain says nothing yet and counts as met.
+  // true: steps for about `hopeless` seconds only. Their time is the point's one sample if a step
+  // succeeded, and the status is ok if they met the strain limit. Springs have the stiffness that a
+  // calibration begins with, so their strain does not count.
   bool look = false;
 };
 
-// One judged run, and a first sample of its time; or only a sample more, or a look. A
-// sample is the mean time of as many runs as take least_sample together; it is taken again where
-// the machine was disturbed (machine_noise.h), unless it takes longer than longest_retaken. There
-// is none where the run failed. guess: a stiffness to begin calibration from, where one is needed.
-// Throws Interrupted, and nothing else: whatever goes wrong is the point's status.
-PointResult run_point(const PointSpec& spec, const RunLimits& limits,
-                      std::optional<double> guess = {});
+// One judged run and a first sample of its time; or only one more sample, or a look. A sample is
+// the mean time of as many runs as take least_sample together. It is taken again if the machine was
+// disturbed (machine_noise.h) and it is not longer than longest_retaken. A run that failed has
+// none. Throws only Interrupted: any other failure is the point's status.
+PointResult run_point(const PointSpec& spec, const RunLimits& limits);
 
 }  // namespace harness

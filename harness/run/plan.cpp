@@ -10,12 +10,6 @@
 namespace harness {
 namespace {
 
-bool selected(const SweepFilters& filters, const PointSpec& spec) {
-  const std::string id = spec.id();
-  return (!filters.include || filters.include->found_in(id)) &&
-         (!filters.exclude || !filters.exclude->found_in(id));
-}
-
 // Steps between two rungs that halve, by which these are divided: factors of about 1.2, so chosen
 // that rates of 25, 50 or 100 steps a second stay whole numbers.
 constexpr double refinements[] = {1, 1.2, 1.44, 1.68};
@@ -38,7 +32,9 @@ void add_ladder(Search& search, const SweepSpec& sweep, const SweepFilters& filt
     std::vector<double> ladder = step_ladder(sweep, divisors);
     std::erase_if(ladder, [&](double step) {
       search.base.step = step;
-      return !selected(filters, search.base);
+      const std::string id = search.base.id();
+      return (filters.include && !filters.include->found_in(id)) ||
+             (filters.exclude && filters.exclude->found_in(id));
     });
     return ladder;
   };
@@ -73,8 +69,7 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
   std::vector<Search> searches;
   std::size_t family = 0;
   for (const SweepSpec& sweep : suite.sweeps) {
-    const auto found = find_scene(sweep.scene);
-    const SceneType& type = *found;
+    const auto type = find_scene(sweep.scene);
     std::vector<double> limits = sweep.limits;
     std::sort(limits.rbegin(), limits.rend());  // loose to tight
     std::vector<int> resolutions = sweep.resolutions;
@@ -83,13 +78,13 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
       if (filters.solver && !matches(*filters.solver, contestant.name)) continue;
       for (const int resolution : resolutions) {
         SceneParameters given = sweep.scene_parameters;
-        given[type.resolution] = resolution;
+        given[type->resolution] = resolution;
         PointSpec base;
         base.sweep = sweep.sweep;
         base.scene = sweep.scene;
-        base.scene_parameters = complete_parameters(type, given);
+        base.scene_parameters = complete_parameters(*type, given);
         base.resolution = resolution;
-        const auto [vertices, constraints] = type.counts(base.scene_parameters);
+        const auto [vertices, constraints] = type->counts(base.scene_parameters);
         base.vertices = vertices;
         base.constraints = constraints;
         base.contestant = contestant.name;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "harness/base/child_process.h"
+#include "harness/base/clock.h"
 #include "harness/base/statistics.h"
 #include "harness/base/text.h"
 #include "harness/judge/drive.h"
@@ -18,19 +19,17 @@ using inextensible::Status;
 
 namespace {
 
-// A run that hardly moves keeps its strain and its energy, as single precision does at tiny steps.
-// Half the reference's motion is far from both ends: phase errors and damping leave more, what does
-// not move leaves none.
+// A run that hardly moves keeps its strain and energy, as in single precision at tiny steps. Phase
+// errors and damping leave far more than half of the reference's motion.
 constexpr double least_motion = 0.5;
 
 constexpr int sampled_instants = 100;  // a run, for statistics that need sorting
 
-// A read of the clock takes tens of nanoseconds, the step of a short chain a few hundred. So steps
-// are timed in blocks of at least this length where the judge need not look in between, and a run
-// whose judged steps are shorter is run again without the judge, for its time.
+// Reading the clock takes tens of nanoseconds, the step of a short chain a few hundred: without the
+// judge, steps are timed in blocks of at least this length.
 constexpr double shortest_block = 2e-5;  // s
 
-// Nominal times are right within a factor of two: work that is a few times too much is hopeless.
+// Nominal times are right within a factor of two only.
 constexpr double work_patience = 4;
 
 constexpr double rounding = 1e-6;  // of a frame: times add up their steps
@@ -79,7 +78,6 @@ std::vector<FrameTime> FrameTimes::summary() const {
 PointRunner::PointRunner(const PointSpec& spec, const RunLimits& limits)
     : spec_(spec),
       limits_(limits),
-      start_(Clock::now()),
       scene_(limits.scene ? *limits.scene : find_scene(spec.scene)->build(spec.scene_parameters)),
       backend_(*inextensible::find_backend(spec.solver)),
       steps_(static_cast<int>(std::lround(scene_.duration / spec.step))),
@@ -91,8 +89,8 @@ PointRunner::PointRunner(const PointSpec& spec, const RunLimits& limits)
 class PointRunner::Observed : public Observer {
  public:
   // Without the judge, all time is left to the steps.
-  Observed(const PointRunner& runner, bool judged, double stop_at, bool by_work, Run& run)
-      : runner_(runner), stop_at_(stop_at), by_work_(by_work), run_(run) {
+  Observed(const PointRunner& runner, bool judged, double stop_at, RunPart part, Run& run)
+      : runner_(runner), stop_at_(stop_at), part_(part), run_(run) {
     if (!judged) return;
     judge_.emplace(runner.scene_, judging());
     run.stepper->observe(judge_->observer());
@@ -106,7 +104,7 @@ class PointRunner::Observed : public Observer {
     return block_;
   }
 
-  // Where this run is, for the process that watches over it. In whatever order it sees that.
+  // Tells the watching process where this run is; the order in which it sees this does not matter.
   void each(const State& state, const DriveState& driven) {
     if (!limits_.heartbeat) return;
     limits_.heartbeat->step.store(driven.steps, std::memory_order_relaxed);
@@ -120,7 +118,7 @@ class PointRunner::Observed : public Observer {
     const double cpu_seconds = thread_seconds() - cpu_begin_;
     if (judge_) run_.cpu_seconds += cpu_seconds;
     const double time = state.time - runner_.first_state_.time;
-    // Where another process had the processor, the frame is not to blame.
+    // Time in which another process had the processor is not the frame's.
     if (driven.taken > 0)
       frames_.add(spec_.adaptive ? 1 : driven.taken, spec_.step, time,
                   std::min(seconds, cpu_seconds));
@@ -150,9 +148,9 @@ class PointRunner::Observed : public Observer {
     options.velocities = backend_.velocities;
     if (stop_at_ != diverged_strain) return options;  // no errors, and nothing beside them
     options.reference = runner_.reference_;
-    // Where growth is the question, memory for iterates would be part of the answer.
+    // Memory for iterates would distort the growth that a resolution sweep measures.
     options.residual = backend_.shows_iterates && !spec_.adaptive && spec_.sweep != "resolution";
-    // A figure draws the series of step sweeps; for the others it would fill files unread.
+    // Only a figure of step sweeps draws the series.
     options.residual_series = spec_.sweep == "step";
     return options;
   }
@@ -170,7 +168,7 @@ class PointRunner::Observed : public Observer {
 
   // s, as far as it counts against limits_.hopeless.
   double stepped() const {
-    if (!by_work_) return run_.seconds;
+    if (part_ == RunPart::measured) return run_.seconds;
     return nominal_seconds(run_.stepper->work(), runner_.scene_.problem->constraints()) /
            work_patience;
   }
@@ -194,7 +192,7 @@ class PointRunner::Observed : public Observer {
                   "; stopped at t = " + number_text(time) + " s";
   }
 
-  // What kept a run that reached its end from being one of this motion.
+  // Judges a run that reached its end.
   void decide() {
     const Measures& found = run_.measures;
     if (keeps_strain() && !(found.max_strain <= spec_.strain_limit * (1 + 1e-9))) {
@@ -219,7 +217,7 @@ class PointRunner::Observed : public Observer {
   const RunLimits& limits_ = runner_.limits_;
   const inextensible::Backend& backend_ = runner_.backend_;
   double stop_at_;
-  bool by_work_;
+  RunPart part_;
   Run& run_;
   std::optional<Judge> judge_;
   FrameTimes frames_{spec_.step};
@@ -229,29 +227,25 @@ class PointRunner::Observed : public Observer {
 };
 
 Run PointRunner::run(const inextensible::Settings& settings, bool judged, double stop_at,
-                     bool phases, bool by_work) const {
+                     bool phases, RunPart part) const {
   Run run;
-  const auto setup = Clock::now();
+  const auto start = Clock::now();
+  if (limits_.heartbeat) limits_.heartbeat->restart(static_cast<int>(part));
   run.stepper = inextensible::make_stepper(
       spec_.solver, scene_.problem, {spec_.strain_limit, spec_.seed, settings, &first_state_});
-  run.setup_seconds = since(setup);
+  run.setup_seconds = since(start);
   run.stepper->measure_phases(phases);
   State state = first_state_;
-  Observed observer(*this, judged, stop_at, by_work, run);
+  Observed observer(*this, judged, stop_at, part, run);
   observer.each({}, {});
   // Between blocks there is little but reads of the clock; the judge takes longer than steps do.
   const double cpu_begin = thread_seconds();
   const DriveState driven =
       drive(*run.stepper, state, {spec_.step, steps_, spec_.adaptive ? usual_halvings : 0},
-            observer, {limits_.timeout, start_, limits_.interrupted});
+            observer, {limits_.timeout, start, limits_.interrupted});
   if (!judged) run.cpu_seconds = thread_seconds() - cpu_begin;
   observer.finish(driven, state.time);
   return run;
-}
-
-void PointRunner::restart_clock(RunPart part) {
-  start_ = Clock::now();
-  if (limits_.heartbeat) limits_.heartbeat->restart(static_cast<int>(part));
 }
 
 }  // namespace harness

@@ -4,23 +4,22 @@
 #include <memory>
 #include <vector>
 
-#include "harness/base/clock.h"
 #include "harness/run/measure_point.h"
 #include "solvers/registry.h"
 
 namespace harness {
 
-// The wall time of a run cut into the frames of a film or a game.
+// Divides a run's wall time into the frames of a film or game.
 class FrameTimes {
  public:
-  // step: s, the run's; no figures are given for frames that are shorter.
+  // step: s; frames that are shorter than it are left out.
   explicit FrameTimes(double step);
 
   // `steps` equal ones that ended at `time` (s, of the scene) took `seconds` of wall time together.
   // A step belongs to the frame in which it ends.
   void add(int steps, double step, double time, double seconds);
 
-  // Times of whole frames; a rate without any is left out.
+  // Times of whole frames; rates without any are left out.
   std::vector<FrameTime> summary() const;
 
  private:
@@ -37,26 +36,24 @@ struct Run : RunOutcome {
   double first_step_seconds = 0;
   double cpu_seconds = 0;  // of the thread, the same
   std::unique_ptr<inextensible::Stepper> stepper;
-  bool observed = false;  // the judge was shown the iterates of its steps
+  bool observed = false;  // the judge saw the iterates
   std::vector<FrameTime> frame_times;
 };
 
-// Scenes are the same for every run of a point; the stepper is constructed each time.
+// All runs of a point share the scene; each constructs its own stepper.
 class PointRunner {
  public:
   // Both must outlive this. Throws std::invalid_argument for a scene that makes no problem.
   PointRunner(const PointSpec& spec, const RunLimits& limits);
 
-  // judged: with the judge, whose looks are not timed. The run is cut short once its strain exceeds
-  // stop_at; the errors against a reference are measured only where that is diverged_strain.
-  // Throws Interrupted.
-  // phases: whether they are timed, which takes tens of nanoseconds each.
-  // by_work: a run is hopeless by the nominal time of its work, so that it always ends alike.
+  // A run with the whole time-out to itself. judged: with the judge, whose looks are not timed. The
+  // run is cut short once its strain exceeds stop_at; the errors against a reference are measured
+  // only where that is diverged_strain. phases: whether they are timed, which takes tens of
+  // nanoseconds each. A calibration's run is hopeless by the nominal time of its work, so that it
+  // always ends alike. Throws Interrupted.
   Run run(const inextensible::Settings& settings, bool judged, double stop_at, bool phases = true,
-          bool by_work = false) const;
+          RunPart part = RunPart::measured) const;
 
-  // For the next run.
-  void restart_clock(RunPart part);
   const inextensible::Backend& backend() const { return backend_; }
   const PointSpec& spec() const { return spec_; }
   const Scene& scene() const { return scene_; }
@@ -67,7 +64,6 @@ class PointRunner {
 
   const PointSpec& spec_;
   const RunLimits& limits_;
-  Clock::time_point start_;
   Scene scene_;
   const inextensible::Backend& backend_;
   int steps_;

@@ -9,14 +9,13 @@ namespace harness {
 namespace {
 
 constexpr double clearly_slower = 1.5;
-constexpr double close_neighbor = 2;  // less than that many times slower than the best
-constexpr double noise = 1.03;        // a ratio of times up to this is none
+constexpr double close_neighbor = 2;  // times the best time
+constexpr double noise = 1.03;        // smaller ratios of times count as equal
 // A run that has stepped for this many times the slowest level's best time cannot be the best of
-// any level; its time has risen. While errors are too large yet, as many times as four halvings of
-// the step and more take.
+// any level. While errors are still too large, patience suffices for four more halvings.
 constexpr double hopeless_factor = 3, patient_factor = 30;
-// An error above this part of the one at twice the step does not fall as a method of first order's.
-// Several coarse steps may let cloth settle into the same wrong folds before a finer one does not.
+// An error above this fraction of the one at twice the step falls more slowly than first order.
+// Cloth may settle into the same wrong folds at several coarse steps before a finer one is right.
 constexpr double stays = 0.85;
 constexpr int longest_stay = 5;
 constexpr double never = std::numeric_limits<double>::infinity();
@@ -109,7 +108,7 @@ class StepSearch {
     }
   }
 
-  // Whether a walk to finer steps has ended whose time has risen twice in a row.
+  // Whether a walk to finer steps ends, after its time has risen twice in a row.
   bool done(std::size_t rung, const PointResult& point) {
     if (!goal_ || error_stays_ >= longest_stay || gave_up(point)) return true;
     if (!point.ok()) return failures_ >= 2;
@@ -136,7 +135,7 @@ class StepSearch {
     visit(rung);
   }
 
-  // Where a first sample was disturbed, the best step may look like its neighbour's rise.
+  // A disturbed first sample may make the best step look slower than its neighbour.
   void look_around_best() {
     if (!best_rung(any_motion)) return;
     const auto& all = seconds_.at(any_motion);
@@ -154,7 +153,7 @@ class StepSearch {
     }
   }
 
-  // Where a best step is an end of what was tried: the next rung, and in which direction it lies.
+  // The next rung and its direction, where a best step is an end of the range tried.
   std::optional<std::pair<std::size_t, int>> beyond_best() const {
     for (const auto& [level, times] : seconds_) {
       const auto best = best_rung(level);
@@ -165,8 +164,7 @@ class StepSearch {
     return std::nullopt;
   }
 
-  // Rungs beside the best of each level, until those on both sides are there and not faster. What
-  // has failed is a rung that was tried.
+  // Tries rungs beside the best of each level until neither side is faster.
   void refine() {
     if (ladder_.stride == 1 || unsupported_) return;
     std::set<std::size_t> tried;
@@ -225,18 +223,6 @@ class StepSearch {
 };
 
 }  // namespace
-
-std::vector<std::size_t> BestSteps::near_best(double level, double factor) const {
-  std::vector<std::size_t> rungs;
-  const auto times = seconds.find(level);
-  if (times == seconds.end()) return rungs;
-  double least = never;
-  for (const auto& [rung, taken] : times->second) least = std::min(least, taken);
-  for (const auto& [rung, taken] : times->second) {
-    if (taken <= factor * least) rungs.push_back(rung);
-  }
-  return rungs;
-}
 
 BestSteps find_best_steps(const StepLadder& ladder) { return StepSearch(ladder).run(); }
 

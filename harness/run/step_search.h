@@ -10,11 +10,9 @@
 
 namespace harness {
 
-// docs/measuring.md ("The time step") has the rule, for the fastest step of any motion and for
-// those within levels of error. With a neighbour's best step the search goes from there in both
-// directions. A failure counts as a rise, and before the first success as a reason to go finer. A
-// fast run with a wrong motion ends no search. Where a best step is an end of what was tried, the
-// search goes on from there. Only then come the rungs between those that halve.
+// The rule is in docs/measuring.md ("The time step"). From a neighbour's best step the search goes
+// in both directions. A failure counts as a rise, and before the first success as a reason to go
+// finer. Where a best step is an end of what was tried, the search continues from there.
 inline constexpr std::size_t samples_when_close = 3;
 
 struct StepLadder {
@@ -22,8 +20,8 @@ struct StepLadder {
   // The rung's point, which is run when it is first asked for. A run that takes longer than
   // `useful` seconds per simulated second is of no use to the search.
   std::function<const PointResult&(std::size_t rung, double useful)> run;
-  // The same with one sample more, if it can have one.
-  std::function<const PointResult&(std::size_t rung)> again;
+  // Takes one sample more of a rung, if it can have one.
+  std::function<void(std::size_t rung)> again;
   std::vector<double> levels = {};        // of error, loose to tight; none: any motion alone
   std::size_t stride = 1;                 // of the rungs that halve the step
   std::optional<std::size_t> start = {};  // the rung to begin from
@@ -33,11 +31,8 @@ struct StepLadder {
 struct BestSteps {
   std::optional<std::size_t> best;  // the best rung of any motion; none if every step failed
   bool timed_out = false;           // every step that was tried was stopped by its time-out
-  std::map<double, std::map<std::size_t, double>> seconds;  // by level and rung
-
-  // Rungs within a level (any_motion: all that ran to the end) whose time is within this factor of
-  // the best one's: which of them is the best, more samples must say.
-  std::vector<std::size_t> near_best(double level, double factor) const;
+  // By level (any_motion: all that ran to the end) and rung; no level is empty.
+  std::map<double, std::map<std::size_t, double>> seconds;
 };
 
 BestSteps find_best_steps(const StepLadder& ladder);

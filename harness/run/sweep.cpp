@@ -1,13 +1,10 @@
 #include "harness/run/sweep.h"
 
-#include <gsl/gsl_randist.h>
-#include <gsl/gsl_rng.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
-#include <memory>
+#include <random>
 #include <set>
 #include <tuple>
 
@@ -19,17 +16,17 @@ namespace {
 constexpr double hopeless_least = 0.2;  // s; shorter runs are always finished
 // Steps whose time is within this factor of the best are repeated before one is called best.
 constexpr double candidate_factor = 1.2;
-// What may be best, in suites that ask for as many samples as this, is run for at least 0.2 s. That
-// many samples can tell two points apart in spite of one that was disturbed.
+// Candidates in suites that ask for this many samples are run for at least 0.2 s. So many samples
+// can tell two points apart even if one sample was disturbed.
 constexpr int full_reps = 7;
 constexpr double least_measured = 0.2;  // s
 constexpr int other_reps = 5;           // at most, of the other points of a step sweep
 
-// What may be the best point of one search, by rung; the points' place in the outcome.
+// The candidates of one search: their places in the outcome, by rung.
 struct Choice {
-  std::map<std::size_t, std::size_t> candidates;
-  std::size_t rungs = 0;      // of the whole ladder
-  double level = any_motion;  // of error
+  double level;       // of error
+  std::size_t rungs;  // of the whole ladder
+  std::map<std::size_t, std::size_t> candidates = {};
 };
 
 const char* ladder_end(std::size_t rung, std::size_t rungs) {
@@ -37,10 +34,9 @@ const char* ladder_end(std::size_t rung, std::size_t rungs) {
   return rung == 0 ? "coarsest" : rung + 1 == rungs ? "finest" : "";
 }
 
-// By the times of all samples so far.
+// Marks the best points by all samples so far.
 void choose(const std::vector<Choice>& choices, std::vector<PointResult>& points) {
   for (const Choice& choice : choices) {
-    if (choice.candidates.empty()) continue;
     const auto [rung, place] = *std::ranges::min_element(
         choice.candidates, {}, [&](const auto& one) { return points[one.second].seconds(); });
     PointResult& point = points[place];
@@ -67,7 +63,7 @@ struct Neighbour {
     return near->second / spec.strain_limit;
   }
 
-  // The rung of another ladder that comes next to the best step.
+  // The first rung of another ladder that is not coarser than the best step.
   std::optional<std::size_t> rung_in(const std::vector<double>& ladder) const {
     if (!best_step) return std::nullopt;
     const auto near =
@@ -76,7 +72,7 @@ struct Neighbour {
   }
 };
 
-// Where contestants meet: scene, parameters, limit, and the step where all run at every step.
+// Where contestants are compared: scene, parameters, limit, and the step in a search of all steps.
 using MeetingPlace = std::tuple<std::string, SceneParameters, double, double>;
 
 // What all searches of a sweep share.
@@ -84,11 +80,10 @@ struct Sweep {
   const Suite& suite;
   const std::vector<Search>& searches;
   const SweepEvents& events;
-  const SweepRunners& runners;
+  const Runner& run;
   std::vector<PointResult>& points;
   std::vector<Choice> choices = {};
-  // The fastest run at each place so far whose motion is right to the headline's error, as far as
-  // errors are known.
+  // s/s; the fastest run at each place whose motion error, if known, is within the headline's.
   std::map<MeetingPlace, double> fastest = {};
 
   void remember(const MeetingPlace& place, const PointResult& point) {
@@ -104,7 +99,7 @@ struct Sweep {
   }
 
   const PointResult& add(PointResult point, std::size_t search) {
-    // A point that no judge has seen: it was skipped, or its process ended early.
+    // The judge has not seen a point that was skipped or whose process ended early.
     Measures& measures = point.measures;
     if (std::isnan(measures.trajectory) && measures.unknown_because.empty())
       measures.unknown_because = "no run came to an end that could be judged";
@@ -114,15 +109,15 @@ struct Sweep {
   }
 
   void repeat(PointResult& point) {
-    runners.add_sample(point, {.timeout = suite.timeout, .interrupted = events.interrupted});
+    add_sample(point, run, {.timeout = suite.timeout, .interrupted = events.interrupted});
   }
 
   void find_best(std::size_t search, Neighbour& neighbour);
   void repeat_candidates();
 };
 
-// Rounds of one sample each, in a shuffled order, of the points that may be best (of a step sweep:
-// of all that ran to the end), until each has enough.
+// Takes one sample of each candidate (in a step sweep: of each point that ran to the end) per
+// round, in a shuffled order, until each has enough.
 void Sweep::repeat_candidates() {
   struct Repeated {
     std::size_t point;
@@ -148,16 +143,13 @@ void Sweep::repeat_candidates() {
     const bool full = one.may_be_best && suite.reps >= full_reps;
     return !full || seconds >= least_measured || one.tries >= 2 * suite.reps;
   };
-  const std::unique_ptr<gsl_rng, decltype(&gsl_rng_free)> random(gsl_rng_alloc(gsl_rng_mt19937),
-                                                                 gsl_rng_free);
-  gsl_rng_set(random.get(), suite.seed);
-  for (std::size_t done = 0;;) {
-    std::erase_if(round, enough);
-    if (round.empty()) return;  // GSL's shuffle does not take nothing
-    std::size_t all = done;     // about
+  std::mt19937_64 random(suite.seed);
+  std::size_t done = 0;
+  for (std::erase_if(round, enough); !round.empty(); std::erase_if(round, enough)) {
+    std::size_t all = done;  // about
     for (const Repeated& one : round)
       all += static_cast<std::size_t>(std::max(1, one.least - one.tries));
-    gsl_ran_shuffle(random.get(), round.data(), round.size(), sizeof(Repeated));
+    std::ranges::shuffle(round, random);
     for (Repeated& one : round) {
       repeat(points[one.point]);
       ++one.tries;
@@ -166,13 +158,12 @@ void Sweep::repeat_candidates() {
   }
 }
 
-// Each rung of the search's ladder is run when it is first asked for.
 void Sweep::find_best(std::size_t number, Neighbour& neighbour) {
   const Search& search = searches[number];
   std::map<std::size_t, std::size_t> place_of_rung;
-  // Stopped for others' sake: at a neighbouring limit it may be nearer to them.
+  // A run was stopped because others are faster; at the next limit it may be closer to them.
   bool was_far_behind = false;
-  const auto run = [&](std::size_t rung, double longest_useful) -> const PointResult& {
+  const auto try_rung = [&](std::size_t rung, double longest_useful) -> const PointResult& {
     if (const auto known = place_of_rung.find(rung); known != place_of_rung.end())
       return points[known->second];
     PointSpec spec = search.base;
@@ -184,9 +175,10 @@ void Sweep::find_best(std::size_t number, Neighbour& neighbour) {
         std::isinf(useful)
             ? 1e300
             : std::max(hopeless_least, useful * spec.scene_parameters.at("duration"));
-    PointResult point =
-        runners.run(spec, {suite.timeout, hopeless, events.interrupted, runners.references},
-                    neighbour.guess_of_stiffness(spec));
+    PointResult point = run(spec, {.timeout = suite.timeout,
+                                   .hopeless = hopeless,
+                                   .interrupted = events.interrupted,
+                                   .stiffness_guess = neighbour.guess_of_stiffness(spec)});
     if (point.stiffness)
       neighbour.stiffness_times_limit[spec.step] = *point.stiffness * spec.strain_limit;
     was_far_behind = was_far_behind || (point.status == PointStatus::timeout && useful == behind &&
@@ -195,37 +187,34 @@ void Sweep::find_best(std::size_t number, Neighbour& neighbour) {
     place_of_rung[rung] = points.size();
     return add(std::move(point), number);
   };
-  // Unless its runs have taken long already.
-  const auto again = [&](std::size_t rung) -> const PointResult& {
+  const auto again = [&](std::size_t rung) {
     PointResult& point = points[place_of_rung.at(rung)];
     if (point.measured_seconds() < repeat_for) repeat(point);
-    return point;
   };
   const BestSteps found =
-      find_best_steps({search.ladder.size(), run, again, levels_of(suite), search.stride,
+      find_best_steps({search.ladder.size(), try_rung, again, levels_of(suite), search.stride,
                        neighbour.rung_in(search.ladder), search.every_step});
   if (!found.best) {
     neighbour.hopeless = found.timed_out && !was_far_behind;
     return;
   }
   neighbour.best_step = search.ladder[*found.best];
-  std::vector<double> levels = levels_of(suite);
-  levels.insert(levels.begin(), any_motion);
-  for (const double level : levels) {
-    Choice& choice = choices.emplace_back();
-    choice.rungs = search.ladder.size();
-    choice.level = level;
-    for (const std::size_t rung : found.near_best(level, candidate_factor))
-      choice.candidates[rung] = place_of_rung.at(rung);
+  for (auto at = found.seconds.rbegin(); at != found.seconds.rend(); ++at) {  // loose to tight
+    const auto& [level, times] = *at;
+    Choice& choice = choices.emplace_back(Choice{level, search.ladder.size()});
+    const double least =
+        std::ranges::min_element(times, {}, [](const auto& one) { return one.second; })->second;
+    for (const auto& [rung, seconds] : times)
+      if (seconds <= candidate_factor * least) choice.candidates[rung] = place_of_rung.at(rung);
   }
 }
 
 }  // namespace
 
 SweepOutcome run_sweep(const Suite& suite, const std::vector<Search>& searches,
-                       const SweepEvents& events, const SweepRunners& runners) {
+                       const SweepEvents& events, const Runner& run) {
   SweepOutcome outcome;
-  Sweep sweep{suite, searches, events, runners, outcome.points};
+  Sweep sweep{suite, searches, events, run, outcome.points};
   std::map<std::size_t, Neighbour> neighbours;
   try {
     for (std::size_t s = 0; s < searches.size(); ++s) {

@@ -1,7 +1,7 @@
-// Runs a suite's sweeps: for each (scene, size, limit, solver) the best step is searched
-// (step_search.h; a step sweep runs the whole ladder). Then the points that may be best (of a step
-// sweep: all that ran to the end) are repeated, interleaved in a shuffled order, and the best ones
-// chosen by the times of all their samples.
+// Runs a suite's sweeps. For each (scene, size, limit, solver) the best step is searched
+// (step_search.h; a step sweep runs the whole ladder). Then the points that may be best (in a step
+// sweep: all that ran to the end) are repeated in a shuffled order, and the best are chosen from
+// all samples.
 #pragma once
 
 #include <functional>
@@ -18,18 +18,17 @@ namespace harness {
 struct SweepFilters {
   std::optional<Pattern> solver;   // must match the contestant's whole name
   std::optional<Pattern> include;  // must be found in a point's id
-  std::optional<Pattern> exclude;  // must not
+  std::optional<Pattern> exclude;  // must not be found there
 };
 
 // One best step to be found.
 struct Search {
   PointSpec base;              // all but the step
-  std::vector<double> ladder;  // s, coarse to fine; those that the filters leave
-  // Rungs to a halving: every stride-th is one of coarsest / 2^k, those between are steps that a
-  // best step is refined by.
+  std::vector<double> ladder;  // s, coarse to fine, as far as the filters allow
+  // Every stride-th rung is coarsest / 2^k; those in between refine a best step.
   std::size_t stride = 1;
-  // Searches of one family (same sweep, scene, size and contestant) come from loose to tight; each
-  // starts from the step that was best in the one before.
+  // Searches of one family (same sweep, scene, size and contestant) are ordered from loose to tight
+  // limits; each starts from the best step of the previous one.
   std::size_t family = 0;
   bool every_step = false;  // the whole ladder, whatever the times are
 };
@@ -37,25 +36,24 @@ struct Search {
 // Throws UsageError if no point is left.
 std::vector<Search> plan(const Suite& suite, const SweepFilters& filters);
 
-// All searches of one (sweep, scene, size) are in one part, large sizes spread first, so that no
-// comparison crosses machines; possibly none. The parts of a plan are the whole, and a search does
-// not depend on the part it is in.
+// One part of a plan, possibly empty. All searches of one scene and size are in the same part, so
+// that no comparison crosses machines; large sizes are distributed first.
 std::vector<Search> shard(std::vector<Search> searches, const Shard& part);
 
 struct Estimate {
   double seconds = 0;  // of the sweep
-  int timed = 0;       // (scene, size, contestant)s, a few steps of each
+  int timed = 0;       // combinations of scene, size and contestant that took a few steps
 };
 
-// From a few steps of each contestant at each size, taking every search for what most searches are:
-// a handful of runs, and repetitions of one. Within a factor of three, mostly.
+// From a few steps of each contestant at each size, as if every search took a handful of runs and
+// repeated one. Mostly right within a factor of three.
 Estimate estimate(const Suite& suite, const std::vector<Search>& searches);
 
-// A point is not repeated any more when its runs have taken so long together: what disturbs a
-// machine averages out within long runs. s.
+// s. A point is no longer repeated once its runs have taken this long: disturbances average out
+// within long runs.
 inline constexpr double repeat_for = 10;
 
-// What a sweep tells while it runs.
+// Progress of a sweep.
 struct SweepEvents {
   std::function<void(const PointResult&, std::size_t search, std::size_t searches)> point =
       [](auto&&...) {};
@@ -69,6 +67,6 @@ struct SweepOutcome {
 };
 
 SweepOutcome run_sweep(const Suite& suite, const std::vector<Search>& searches,
-                       const SweepEvents& events, const SweepRunners& runners = {});
+                       const SweepEvents& events, const Runner& run = run_point);
 
 }  // namespace harness

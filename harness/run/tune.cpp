@@ -6,6 +6,7 @@
 #include <map>
 #include <random>
 #include <set>
+#include <utility>
 
 #include "harness/base/text.h"
 #include "harness/points/point_json.h"
@@ -20,8 +21,9 @@ constexpr double none = std::numeric_limits<double>::infinity();  // seconds of 
 constexpr double give_up_trial_at = 1.5;                          // times the best seconds
 constexpr double first_reach = 0.3;  // standard deviation of the first moves, over the range
 constexpr double last_reach = 0.15;  // times the first
-constexpr double least_gain = 0.05;  // all of it must be faster than the defaults by more than this
+constexpr double least_gain = 0.05;  // the result must be faster than the defaults by more
 constexpr std::uint64_t seed = 1;
+constexpr int value_digits = 3;  // two more than the search can tell apart
 
 double shift(const TunedNumber& number) {
   return number.whole && number.range.least < 1 ? 1 - number.range.least : 0;
@@ -32,15 +34,10 @@ bool logarithmic(const TunedNumber& number) {
   return least > 0 && (number.range.largest + shift(number)) / least >= 10;
 }
 
-// How many times farther the range's lower end is from its bound than the upper one.
-double distance_ratio(const inextensible::SearchRange& range) {
-  return (*range.bound - range.least) / (*range.bound - range.largest);
-}
-
-// To three digits: two more than the search can tell apart.
-double rounded(double value) {
-  const double digits = std::pow(10, 3 - std::ceil(std::log10(std::abs(value) + 1e-300)));
-  return std::round(value * digits) / digits;
+// A value on the scale on which the search is uniform.
+double on_scale(const TunedNumber& number, double value) {
+  if (number.range.bound) return -std::log(*number.range.bound - value);
+  return logarithmic(number) ? std::log(value + shift(number)) : value;
 }
 
 using Random = std::mt19937_64;
@@ -59,8 +56,7 @@ constexpr double give_up_at = 2.5;  // times the time that is known at a place
 constexpr double far_too_long = 4;  // times options.longest_run: no step of a short one takes it
 constexpr int samples = 3;          // of the best steps
 
-// Whether a run ran to the end with a motion that is right to the headline's error, or of which
-// nothing is known.
+// Whether a run reached its end and its motion error, if known, is within the headline's.
 bool counts(const PointResult& point) {
   return point.ok() && within_known_error(point.measures, headline_error);
 }
@@ -74,15 +70,15 @@ struct Found {
 struct Tuner {
   const SweepSpec& scene;  // one size and limit
   const TuneOptions& options;
-  const SweepRunners& runners;
+  const Runner& run_one;
   const std::vector<TunedNumber>& numbers;
-  Values initial;  // what the search begins with, and must better
+  Values initial;  // where the search begins; it must improve on it
   Search search = {};
   std::optional<double> stiffness = {};   // to begin calibrations from
   Found leader = {};                      // so far; where the next search begins
   std::map<Values, Found> measured = {};  // the last time
 
-  // Nothing where no step counts with any settings tried. `guess` is tried first and takes the
+  // Nothing if no step counts with any settings tried. `guess` is tried first and receives the
   // values found.
   std::optional<TunedPlace> run(Values& guess) {
     begin(guess);
@@ -107,7 +103,6 @@ struct Tuner {
         search.ladder[now.rung]};
   }
 
-  // At this size of the scene; nothing is known there.
   void take_size(int size) {
     Suite suite;
     suite.sweeps = {scene};
@@ -131,21 +126,20 @@ struct Tuner {
     what.step = search.ladder[rung];
     what.settings = settings;
     const double hopeless = std::max(0.05, most_seconds * duration());
-    PointResult point = runners.run(
-        what, {options.timeout, hopeless, options.interrupted, runners.references}, stiffness);
+    PointResult point = run_one(what, {.timeout = options.timeout,
+                                       .hopeless = hopeless,
+                                       .interrupted = options.interrupted,
+                                       .stiffness_guess = stiffness});
     if (point.stiffness) stiffness = point.stiffness;
     return point;
   }
 
-  // With a sample more.
-  const PointResult& repeated(PointResult& point) const {
-    runners.add_sample(point, {.timeout = options.timeout, .interrupted = options.interrupted});
-    return point;
+  void repeat(PointResult& point) const {
+    add_sample(point, run_one, {.timeout = options.timeout, .interrupted = options.interrupted});
   }
 
-  // The ladder's best step with the settings that the search begins with, at a smaller size where
-  // that takes too long, and longer with `guess` too: a default must not decide at which size a
-  // method is tuned.
+  // Finds the best step with the initial settings, at a smaller size where it takes too long with
+  // both these and `guess`: a default must not decide at which size a method is tuned.
   void begin(const Values& guess) {
     take_size(scene.resolutions.front());
     const std::vector<int> smaller_ones = smaller_sizes(scene.scene);
@@ -160,8 +154,8 @@ struct Tuner {
     }
   }
 
-  // Where no step counts with the settings that the search was to begin with, it begins with
-  // `guess` or the first drawn set with which one does.
+  // Where no step counts with the initial settings, the search begins with `guess` or the first
+  // drawn set for which one does.
   void draw_start(const Values& guess) {
     std::mt19937_64 random{1};
     std::uniform_real_distribution<double> position(0, 1);
@@ -186,34 +180,29 @@ struct Tuner {
       if (counts(at->second)) best = std::min(best, at->second.seconds());
       return at->second;
     };
-    const auto again = [&](std::size_t rung) -> const PointResult& {
-      return repeated(known.at(rung));
-    };
+    const auto again = [&](std::size_t rung) { repeat(known.at(rung)); };
     find_best_steps({search.ladder.size(), run, again, {headline_error}});
     for (const auto& [rung, point] : known)
       if (counts(point)) learn({rung, point.seconds()});
   }
 
-  // The seconds of the best step with these settings; none if there is none, or they are above
-  // `hopeless`.
+  // Seconds of the best step with these settings; none above `hopeless`.
   std::optional<double> evaluate(const Values& values, double hopeless) {
     const inextensible::Settings settings = settings_of(values);
     const bool in_race = hopeless < 1e300;
     const auto own = measured.find(values);
-    PointResult fastest;
-    std::optional<std::size_t> rung =
+    auto [rung, fastest] =
         best_step(settings, own == measured.end() ? leader.rung : own->second.rung, in_race ? 1 : 2,
-                  hopeless, fastest);
-    // One run is enough to say of what is slower that it is not better.
-    if (rung && (!in_race || fastest.seconds() < leader.seconds)) {
-      for (int i = 1; i < samples; ++i) repeated(fastest);
+                  hopeless);
+    // One run is enough to rule out slower settings.
+    if (fastest.ok() && (!in_race || fastest.seconds() < leader.seconds)) {
+      for (int i = 1; i < samples; ++i) repeat(fastest);
     }
-    if (rung && fastest.seconds() > hopeless) rung.reset();
+    const bool found = fastest.ok() && fastest.seconds() <= hopeless;
     options.tell(scene.scene + "/" + search.base.solver + " " + nlohmann::json(settings).dump() +
-                 ": " + (rung ? duration_text(fastest.seconds()) + "/s" : "too slow"));
-    if (!rung) return {};
-    measured[values] = {*rung, fastest.seconds()};
-    learn(measured[values]);
+                 ": " + (found ? duration_text(fastest.seconds()) + "/s" : "too slow"));
+    if (!found) return {};
+    learn(measured[values] = {rung, fastest.seconds()});
     return fastest.seconds();
   }
 
@@ -221,16 +210,16 @@ struct Tuner {
     if (found.seconds < leader.seconds) leader = found;
   }
 
-  // The rung of the fastest step, whose run goes to `fastest`: from `start` to both sides, until
-  // `patience` steps in a row are not faster.
-  std::optional<std::size_t> best_step(const inextensible::Settings& settings, std::size_t start,
-                                       int patience, double hopeless, PointResult& fastest) {
-    std::optional<std::size_t> best;
+  // The rung of the fastest step and its run, which is not ok if none counts: from `start` to both
+  // sides, until `patience` steps in a row are not faster.
+  std::pair<std::size_t, PointResult> best_step(const inextensible::Settings& settings,
+                                                std::size_t start, int patience, double hopeless) {
+    std::pair<std::size_t, PointResult> best;
+    const PointResult& fastest = best.second;
     const auto faster = [&](std::size_t rung) {
-      PointResult point = run_once(rung, settings, best ? fastest.seconds() : hopeless);
-      if (!counts(point) || (best && point.seconds() >= fastest.seconds())) return false;
-      best = rung;
-      fastest = std::move(point);
+      PointResult point = run_once(rung, settings, fastest.ok() ? fastest.seconds() : hopeless);
+      if (!counts(point) || (fastest.ok() && point.seconds() >= fastest.seconds())) return false;
+      best = {rung, std::move(point)};
       return true;
     };
     faster(start);
@@ -269,7 +258,7 @@ TuneOutcome tune_values(const std::vector<TunedNumber>& numbers, const TuneObjec
     const auto found = seconds(values, hopeless);
     return found && std::isfinite(*found) ? *found : none;
   };
-  // But for the last comparison, two evaluations.
+  // The last comparison takes two evaluations.
   const auto left = [&] { return budget - 2 - outcome.evaluations; };
   double best = evaluate(initial, none);
   if (best == none) return outcome;
@@ -316,29 +305,21 @@ std::vector<TunedNumber> tunable_numbers(const inextensible::Backend& backend) {
 
 double position_of(const TunedNumber& number, double value) {
   const auto& [least, largest, bound] = number.range;
-  const double s = shift(number), inside = std::clamp(value, least, largest);
-  if (bound)
-    return std::log((*bound - least) / (*bound - inside)) / std::log(distance_ratio(number.range));
-  if (!logarithmic(number)) return (inside - least) / (largest - least);
-  return std::log((inside + s) / (least + s)) / std::log((largest + s) / (least + s));
+  const double low = on_scale(number, least), high = on_scale(number, largest);
+  return (on_scale(number, std::clamp(value, least, largest)) - low) / (high - low);
 }
 
 double value_at(const TunedNumber& number, double position) {
   const auto& [least, largest, bound] = number.range;
-  if (bound) {
-    const double distance = (*bound - least) * std::pow(distance_ratio(number.range), -position);
-    return std::clamp(*bound - rounded(distance), least, largest);
-  }
-  const double s = shift(number);
-  const double value = logarithmic(number)
-                           ? (least + s) * std::pow((largest + s) / (least + s), position) - s
-                           : least + position * (largest - least);
+  const double at = std::lerp(on_scale(number, least), on_scale(number, largest), position);
+  if (bound) return std::clamp(*bound - rounded_to(std::exp(-at), value_digits), least, largest);
+  const double value = logarithmic(number) ? std::exp(at) - shift(number) : at;
   if (number.whole) return std::clamp(std::round(value), std::ceil(least), std::floor(largest));
-  return std::clamp(rounded(value), least, largest);
+  return std::clamp(rounded_to(value, value_digits), least, largest);
 }
 
 TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene, TuneOptions options,
-                       const SweepRunners& runners, const TunedEntry* known) {
+                       const Runner& run, const TunedEntry* known) {
   const inextensible::Backend& backend = *inextensible::find_backend(solver);
   const std::vector<TunedNumber> numbers = tunable_numbers(backend);
   options.budget = std::min(options.budget, options.trials_each * static_cast<int>(numbers.size()));
@@ -359,7 +340,7 @@ TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene, TuneOp
       here.refine = false;
       here.resolutions = {size};
       here.limits = {limit};
-      if (auto place = Tuner{here, options, runners, numbers,
+      if (auto place = Tuner{here, options, run, numbers,
                              values_of(there.settings_for(size, limit), numbers)}
                            .run(guess))
         entry.places.push_back(std::move(*place));

@@ -1,5 +1,5 @@
-// Which of some measured runs to take: planted times, errors and frames; and how the time is spent,
-// with a clock that only invented runs advance.
+// Choosing from runs with given times, errors and frames; and spending the time, with a clock that
+// only invented runs advance.
 #include "harness/run/choose.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ const std::vector<PointResult> measured_runs{
     run("a", 1.0 / 60, 1, 0.05), run("a", 1.0 / 120, 2, 0.015), run("b", 1.0 / 60, 3, 0.01),
     run("b", 1.0 / 240, 8, 0.002)};
 
-TEST(Choose, TheFastestIsThatWithinTheError) {
+TEST(Choose, PicksTheFastestWithinTheError) {
   EXPECT_EQ(fastest(measured_runs, {.error = 0.02})->point, &measured_runs[1]);
   EXPECT_EQ(fastest(measured_runs, {.error = 0.02}, "a")->point, &measured_runs[2]);
   EXPECT_EQ(fastest(measured_runs, {.error = any_motion})->point, &measured_runs[0]);
@@ -37,7 +37,7 @@ TEST(Choose, TheFastestIsThatWithinTheError) {
   EXPECT_FALSE(fastest(measured_runs, {.error = 0.02, .rate = 30})) << "no frames of that rate";
 }
 
-TEST(Choose, ABudgetIsKeptByTheFramesAndNotByTheMean) {
+TEST(Choose, FramesKeepTheBudgetNotTheirMean) {
   std::vector<PointResult> all = measured_runs;  // frames of "b": 3 / 60 s, 99 % below 6 / 60 s
   all[1].frame_times = {{60, 2.0 / 60, 9.0 / 60, 9.0 / 60}};
   const auto with = [&all](double budget) { return recommend(all, {.budget = budget}); };
@@ -95,8 +95,7 @@ class InventedMachine {
     std::ranges::reverse(sweep.contestants);
     sweep.coarsest = 1.0 / 60;
     sweep.finest = 1.0 / 240;
-    SweepRunners runners;
-    runners.run = [this](const PointSpec& spec, const RunLimits& limits, auto) {
+    const auto run = [this](const PointSpec& spec, const RunLimits& limits) {
       calls.push_back((limits.look        ? "screen "
                        : limits.sample_of ? "repeat "
                                           : "run ") +
@@ -107,8 +106,7 @@ class InventedMachine {
     };
     return try_contestants(
         suite, plan(suite, {}), {},
-        {for_seconds, [this] { return clock; }, [this] { return clock >= interrupt_at; }}, {},
-        runners);
+        {for_seconds, [this] { return clock; }, [this] { return clock >= interrupt_at; }}, {}, run);
   }
 
  private:

@@ -1,4 +1,4 @@
-// Points in child processes: whatever a child does to itself is one point's status.
+// Runs in child processes: whatever a child does to itself becomes its run's status.
 #include "harness/run/execute.h"
 
 #include <gtest/gtest.h>
@@ -25,15 +25,14 @@ using Work = std::function<void(Heartbeat&)>;
 PointSpec chain_of_ten() { return spec_at("chain", {{"n", 10}}, "gauss_seidel", 0.01); }
 
 // A point whose run does `work` when it has come to step 5, t = 0.25 s.
-PointResult run_isolated(const Work& work, const RunLimits& limits, double memory = 0) {
-  SweepRunners runners;
-  runners.run = [&work](const PointSpec& spec, const RunLimits& inner, std::optional<double>) {
+PointResult run_isolated(const Work& work, const RunLimits& limits) {
+  const auto run = [&work](const PointSpec& spec, const RunLimits& inner) {
     inner.heartbeat->step = 5;
     inner.heartbeat->time = 0.25;
     work(*inner.heartbeat);
     return PointResult(spec, PointStatus::ok);
   };
-  return isolated(runners, memory).run(chain_of_ten(), limits, {});
+  return isolated(run, 0)(chain_of_ten(), limits);
 }
 
 void sleep_for_ever() {
@@ -41,12 +40,11 @@ void sleep_for_ever() {
 }
 
 TEST(Isolation, ARunInAChildIsTheRunInTheParent) {
-  const SweepRunners here, there = isolated(here, 0);
   nlohmann::json both[2];
   for (const bool in_child : {false, true}) {
-    const SweepRunners& runners = in_child ? there : here;
-    PointResult point = runners.run(chain_of_ten(), {}, {});
-    runners.add_sample(point, {});
+    const Runner run = in_child ? isolated(run_point, 0) : run_point;
+    PointResult point = run(chain_of_ten(), {});
+    add_sample(point, run, {});
     EXPECT_EQ(point.samples.size(), 2u);
     EXPECT_GT(point.peak_rss_bytes, 1e6);
     both[in_child] = to_json(point);
@@ -112,14 +110,13 @@ TEST(Isolation, ARunBeyondItsMemoryIsOutOfMemory) {
   std::ifstream statm("/proc/self/statm");
   double pages = 0;
   statm >> pages;
-  RunLimits limits;
   const double memory = pages * static_cast<double>(sysconf(_SC_PAGESIZE)) + 100e6;
-  const PointResult point = isolated({}, memory).run(spec, limits, {});
+  const PointResult point = isolated(run_point, memory)(spec, {});
   EXPECT_EQ(point.status, PointStatus::out_of_memory) << point.detail;
 }
 
-// A child that sleeps; a series of children that are done before they are asked whether to go on;
-// and as a scheduler cancels a job: every process gets the signal, the child may be the first.
+// A child that sleeps; children that finish before they are asked; and children that get the signal
+// first, as when a scheduler cancels a job.
 TEST(Isolation, AnInterruptEndsTheChildAtOnceAndNoOtherIsMade) {
   RunLimits limits;
   int asked = 0;

@@ -37,9 +37,9 @@ struct FakeMachine {
   std::vector<double> hopeless = {};  // s, from which these were
   int repetitions = 0;
 
-  // The machine must outlive them.
-  SweepRunners runners() {
-    return {[this](const PointSpec& spec, const RunLimits& limits, std::optional<double>) {
+  // The machine must outlive it.
+  Runner runner() {
+    return [this](const PointSpec& spec, const RunLimits& limits) {
       if (limits.sample_of) {
         ++repetitions;
         PointResult more(spec);
@@ -58,7 +58,7 @@ struct FakeMachine {
       if (stops && point.ok() && taken > limits.hopeless) point.status = PointStatus::timeout;
       if (point.ok()) point.samples = {taken};
       return point;
-    }};
+    };
   }
 
   std::vector<int> steps() const {  // as 1/n s
@@ -107,7 +107,7 @@ inline Suite suite_of_chain(std::vector<double> limits) {
 }
 
 inline SweepOutcome sweep(const Suite& suite, FakeMachine& machine) {
-  return run_sweep(suite, plan(suite, {}), {}, machine.runners());
+  return run_sweep(suite, plan(suite, {}), {}, machine.runner());
 }
 
 }  // namespace harness

@@ -1,4 +1,4 @@
-// Journals and shards: whatever a sweep is cut into, its parts are the whole.
+// Journals and shards: however a sweep is divided, its parts make up the whole.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -16,19 +16,22 @@ using nlohmann::json;
 
 // Two scenes, two limits, three sizes: 60 searches of up to ten steps.
 Suite suite_of(const std::string& axis) {
-  const auto sweep = [&axis](const std::string& scene, const std::string& sizes, int n) {
-    const std::string rest = R"("solvers": ["shake", "icd"], "steps": {"finest": 0.002}, )";
-    return R"({"scene": ")" + scene + R"(", "sweep": ")" + axis + "\", " + rest +
-           (axis == "strain"
-                ? R"("limits": [0.1, 0.01], "scene_parameters": {"n": )" + std::to_string(n) + "}}"
-                : R"("limit": 0.01, "resolutions": )" + sizes + "}");
-  };
-  return parse_suite(R"({"name": "test", "seed": 3, "reps": 3, "sweeps": [)" +
-                         sweep("chain", "[5, 7, 9]", 7) + ", " + sweep("drape", "[5, 7]", 5) + "]}",
-                     "test");
+  json sweeps = json::array();
+  for (const auto& [scene, sizes] :
+       std::map<std::string, std::vector<int>>{{"chain", {5, 7, 9}}, {"drape", {5, 7}}}) {
+    sweeps.push_back({{"scene", scene},
+                      {"sweep", axis},
+                      {"solvers", {"shake", "icd"}},
+                      {"steps", {{"finest", 0.002}}}});
+    sweeps.back().update(axis == "strain"
+                             ? json{{"limits", {0.1, 0.01}}, {"scene_parameters", {{"n", 7}}}}
+                             : json{{"limit", 0.01}, {"resolutions", sizes}});
+  }
+  const json suite = {{"name", "test"}, {"seed", 3}, {"reps", 3}, {"sweeps", sweeps}};
+  return parse_suite(suite.dump(), "test");
 }
 
-// Times depend on what is run alone; runs fail now and then.
+// Times depend only on what is run; some runs fail.
 FakeMachine hashing_machine() {
   const auto hash = [](const PointSpec& spec) { return std::hash<std::string>{}(key_of(spec)); };
   FakeMachine machine{
@@ -61,7 +64,7 @@ class JournalTest : public ::testing::Test {
     if (journal.header().is_null()) journal.start(header_of(suite));
     FakeMachine machine = hashing_machine();
     const auto outcome =
-        run_sweep(suite, plan(suite, {}), {}, journaled(machine.runners(), journal));
+        run_sweep(suite, plan(suite, {}), {}, journaled(machine.runner(), journal));
     runs = static_cast<int>(machine.specs.size()) + machine.repetitions;
     return points_json(outcome.points);
   }
@@ -108,7 +111,7 @@ TEST_F(JournalTest, ACorruptedLineInTheMiddleIsToldByNumberAndTheOthersStand) {
   EXPECT_EQ(journal.damage(), "");
 }
 
-// A journal without its failures, and one that is made from the result file.
+// A journal without its failures, and one made from the result file.
 TEST_F(JournalTest, RemembersAllButFailuresAndAsMuchOfAResultFile) {
   const Suite suite = suite_of("strain");
   int runs = 0;
@@ -138,7 +141,7 @@ TEST_P(ShardTest, JoinedAreTheWhole) {
   FakeMachine machine = hashing_machine();
   const auto result = [&](const std::vector<Search>& some, const std::string& name) {
     return result_document({{"selection", {{"shard", name}}}}, suite, {"bench"}, true,
-                           run_sweep(suite, some, {}, machine.runners()).points);
+                           run_sweep(suite, some, {}, machine.runner()).points);
   };
   const json whole = result(searches, "");
   const auto sorted = [](const json& document) {

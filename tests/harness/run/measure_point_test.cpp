@@ -1,5 +1,5 @@
-// Real runs: their samples, which of short ones are means of batches, their frames, and contact
-// over a run as a whole. And which samples are taken again, with noise of our own making.
+// Real runs: samples of short ones, frames, and contact over a whole run; and, with artificial
+// noise, which samples are taken again.
 #include "harness/run/measure_point.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ namespace {
 TEST(Batches, ASampleOfAShortRunTakesAtLeastTwentyMilliseconds) {
   PointResult point = run_point(spec_at("chain", {{"n", 10}}, "gauss_seidel", 0.001), {});
   ASSERT_TRUE(point.ok()) << point.detail;
-  for (int i = 1; i < 4; ++i) append(run_point(point.spec, {.sample_of = &point}), point);
+  for (int i = 1; i < 4; ++i) add_sample(point, run_point, {});
   ASSERT_EQ(point.samples.size(), 4u);
   ASSERT_EQ(point.sample_runs.size(), 4u);
   ASSERT_EQ(point.cpu_samples.size(), 4u);
@@ -37,18 +37,17 @@ TEST(Batches, ASampleOfAShortRunTakesAtLeastTwentyMilliseconds) {
   EXPECT_EQ(point.seconds(), *std::ranges::min_element(point.samples));
 }
 
-// Work is that of one run, however many a sample has.
-TEST(Batches, WithoutAReaderOfTimesOneRunIsASample) {
+// Work is that of one run, however many a sample takes.
+TEST(Batches, AnUntimedSampleIsOneRun) {
   const PointSpec spec = spec_at("chain", {{"n", 10}}, "gauss_seidel", 0.01);
-  const RunLimits untimed{.timed = false};
-  PointResult point = run_point(spec, untimed);
-  append(run_point(spec, {.timed = false, .sample_of = &point}), point);
+  PointResult point = run_point(spec, {.timed = false});
+  add_sample(point, run_point, {.timed = false});
   EXPECT_EQ(point.sample_runs, (std::vector<int>{1, 1}));
   EXPECT_EQ(point.retaken, 0);
   EXPECT_EQ(run_point(spec, {}).work, point.work);
 }
 
-// Two runs of one command agree: what a search for a stiffness may take is work, not time.
+// Two runs of one command agree: a calibration is limited by work, not time.
 TEST(PointRunner, ACalibrationIsCutOffByItsWorkAlone) {
   const PointSpec spec =
       spec_at("drape", {{"n", 7}, {"duration", 0.5}}, "vertex_block_descent", 0.01);
@@ -66,23 +65,6 @@ TEST(PointRunner, ACalibrationIsCutOffByItsWorkAlone) {
   EXPECT_FALSE(cut.stiffness);
 }
 
-// Steps of known length and time, cut into frames.
-TEST(FrameTimes, AddUpTheStepsThatEndInAFrame) {
-  FrameTimes frames(1.0 / 120);
-  for (int i = 1; i <= 240; ++i)  // two seconds; the 100th step is slow
-    frames.add(1, 1.0 / 120, i / 120.0, i == 100 ? 1.0 : 0.001);
-  const std::vector<FrameTime> rates = frames.summary();
-  ASSERT_EQ(rates.size(), 3u);
-  const double steps[] = {5, 4, 2};  // a frame
-  for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(rates[i].rate, 120 / steps[i]);
-    EXPECT_NEAR(rates[i].median, 0.001 * steps[i], 1e-12);
-    EXPECT_NEAR(rates[i].worst, 1 + 0.001 * (steps[i] - 1), 1e-12);
-    EXPECT_LE(rates[i].slow, rates[i].worst);
-    EXPECT_GE(rates[i].slow, rates[i].median);
-  }
-}
-
 // `steps` of length h, timed in blocks; the last step takes `last` seconds, each other one 0.5.
 std::vector<FrameTime> frames_of(double h, int steps, int block, double last = 0.5) {
   FrameTimes frames(h);
@@ -91,7 +73,20 @@ std::vector<FrameTime> frames_of(double h, int steps, int block, double last = 0
   return frames.summary();
 }
 
-TEST(FrameTimes, OfStepsThatAreTimedTogetherAreThoseOfEachAlone) {
+TEST(FrameTimes, AddUpTheStepsThatEndInAFrame) {
+  const auto rates = frames_of(1.0 / 120, 240, 1, 9);
+  ASSERT_EQ(rates.size(), 3u);
+  const double steps[] = {5, 4, 2};  // a frame
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(rates[i].rate, 120 / steps[i]);
+    EXPECT_NEAR(rates[i].median, 0.5 * steps[i], 1e-12);
+    EXPECT_NEAR(rates[i].worst, 9 + 0.5 * (steps[i] - 1), 1e-12);
+    EXPECT_LE(rates[i].slow, rates[i].worst);
+    EXPECT_GE(rates[i].slow, rates[i].median);
+  }
+}
+
+TEST(FrameTimes, AreTheSameForStepsTimedInBlocks) {
   const auto one = frames_of(0.001, 1000, 1), blocks = frames_of(0.001, 1000, 40, 20);
   ASSERT_EQ(one.size(), blocks.size());
   for (std::size_t i = 0; i < one.size(); ++i) {
@@ -100,7 +95,7 @@ TEST(FrameTimes, OfStepsThatAreTimedTogetherAreThoseOfEachAlone) {
   }
 }
 
-TEST(FrameTimes, OfPartsOfAFrameAndOfFramesShorterThanAStepAreLeftOut) {
+TEST(FrameTimes, LeaveOutPartsOfAFrameAndFramesShorterThanAStep) {
   const auto coarse = frames_of(1.0 / 25, 25, 1);
   ASSERT_EQ(coarse.size(), 1u);
   EXPECT_EQ(coarse[0].rate, 24);
@@ -110,9 +105,8 @@ TEST(FrameTimes, OfPartsOfAFrameAndOfFramesShorterThanAStepAreLeftOut) {
 
 class DrapeErrors : public ::testing::TestWithParam<const char*> {};
 
-// A cloth that falls onto a sphere with friction, nearly inextensible: with each halving of the
-// step the error falls until it is what the reference cannot tell from zero, and what is dissipated
-// never comes back.
+// A nearly inextensible cloth falls onto a sphere with friction: with each halving of the step the
+// error falls to the reference's uncertainty, and dissipated energy never comes back.
 TEST_P(DrapeErrors, FallWithTheStepToTheReferencesGap) {
   if (inextensible::testing::sanitized) GTEST_SKIP() << "too slow with sanitizers";
   RunLimits limits{.timed = false};
@@ -139,8 +133,8 @@ INSTANTIATE_TEST_SUITE_P(ContactMethods, DrapeErrors,
                                            "jacobi", "implicit_springs"),
                          inextensible::names::contestant_name);
 
-// Edges that shake between limits of 10 % bring energy back step by step.
-TEST(EnergyRise, OfAShakingClothFailsIt) {
+// Edges that shake between limits of 10 % return energy step by step.
+TEST(EnergyRise, FailsAShakingCloth) {
   PointSpec spec = spec_at("drape", {{"n", 15}}, "fast_projection", 1.0 / 1600);
   spec.strain_limit = 0.1;
   const PointResult point = run_point(spec, {.timed = false});
@@ -184,7 +178,7 @@ TEST(QuietSamples, NoMoreThanAQuarterOfAllAreTakenAgain) {
   EXPECT_EQ(budget.most(), QuietProbe::most_retaken);
 }
 
-TEST(QuietSamples, WhatIsUsualIsLearntAnew) {
+TEST(QuietSamples, TheUsualTimeIsLearnedAgain) {
   double now = 1;
   QuietProbe probe([&now] { return now; });
   probe.look();

@@ -1,5 +1,5 @@
-// The search for a step on a machine that is disturbed half of the time, with a stand-in whose true
-// times are known; and the search for a stiffness, with runs that are formulas.
+// The search for a step on a machine that is disturbed half of the time, with known true times; and
+// the search for a stiffness, with formulas for runs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -104,10 +104,9 @@ TEST(NoisySearch, IsNotMisledByFirstSamples) {
       tried = std::max(tried, rung);
       return points[rung];
     };
-    const auto sample = [&](std::size_t rung) -> const PointResult& {
+    const auto sample = [&](std::size_t rung) {
       again = true;
       points[rung].samples.push_back(ladder.later[rung]);
-      return points[rung];
     };
     EXPECT_EQ(find_best_steps({points.size(), run, sample, {}, 1, ladder.start}).best, ladder.best)
         << ladder.what;
@@ -130,10 +129,9 @@ TEST(StepSearch, LooksBetweenRungsForTheFirstStepThatIsRight) {
     point.measures.trajectory = rung < first_right ? 0.05 : 0.003;
     return point;
   };
-  const auto again = [&](std::size_t rung) -> const PointResult& { return points[rung]; };
-  const BestSteps found = find_best_steps({points.size(), run, again, {0.02}, 2});
+  const BestSteps found = find_best_steps({points.size(), run, [](auto) {}, {0.02}, 2});
   EXPECT_EQ(found.best, 0u);
-  EXPECT_EQ(found.near_best(0.02, 1), std::vector{first_right});
+  EXPECT_EQ(found.seconds.at(0.02).begin()->first, first_right);
 }
 
 // ---- Stiffness ----
@@ -146,11 +144,11 @@ CalibrationTrial judged(double strain) {
   return {reached <= limit ? PointStatus::ok : PointStatus::strain_missed, reached, 1, "formula"};
 }
 
-// What a limit of 1 % asks for is 300 N.
+// A limit of 1 % needs 300 N.
 double tension_law(double stiffness) { return 3 / stiffness; }
 
-// From above the law leads there; from below runs are cut short, and say little; and where tension
-// grows with stiffness, it is no law.
+// From above, the law leads to the answer; from below, runs are cut short and say little; and if
+// tension grows with stiffness, the law does not hold.
 TEST(Calibration, FindsItsWay) {
   const auto growing = [](double stiffness) {
     return 0.3 * std::pow(stiffness, -0.5) * (1 + 0.05 * std::sin(7 * std::log(stiffness)));
@@ -179,7 +177,7 @@ TEST(Calibration, FindsItsWay) {
   }
 }
 
-// A time-out is no strain: not "too soft", which would send the search to stiffer, slower springs.
+// A time-out must not count as "too soft", which would lead to stiffer, slower springs.
 TEST(Calibration, GivesUpAndSaysWhy) {
   const CalibrationTrial soft = judged(0.02), good{PointStatus::ok, 0.1 * limit, 1, ""},
                          slow{PointStatus::timeout, 0.0035, 61.5, "stopped at t = 0.25 s"},
@@ -210,8 +208,8 @@ TEST(Calibration, GivesUpAndSaysWhy) {
   }
 }
 
-// Runs that fail beyond some stiffness, or below one, as Newton's iteration does, at a strain that
-// the run's beginning alone has seen.
+// Runs fail above some stiffness, or below one, as Newton's iteration does; their strain is that of
+// the run's beginning only.
 TEST(Calibration, LooksOnBothSidesOfARunThatFailed) {
   for (const bool stiff_ones_fail : {true, false}) {
     const auto works = [&](double stiffness) {
