@@ -265,7 +265,7 @@ double VertexPasses::visit(const Group& group, double stiffness_scale, double re
       double q[3] = {plane[0][i], plane[1][i], plane[2][i]};
       solve(q);
       const double give = q[0] * plane[0][i] + q[1] * plane[1][i] + q[2] * plane[2][i];
-      const double force = -behind / give;
+      const double force = behind < 0 ? -behind / give : 0;  // no plane: all of it is 0
       push[i] = force / inertia[i];
       for (int axis = 0; axis < 3; ++axis) at[axis] += force * q[axis];
     }
