@@ -126,7 +126,7 @@ Path extrapolated(const Path& coarse, const Path& fine, int order) {
   return path;
 }
 
-// Two paths that would be one if a reference were without error.
+// Two paths that would be the same if a reference had no error.
 struct GapPart {
   const char* name;
   const Path *one, *other;
@@ -148,7 +148,7 @@ class ReferenceMaker {
 
   Reference by_two_routes(double finest) {
     const bool angles = type_->pendulum;
-    const double h = finest > 0 ? finest : (angles ? sample_interval / 1024 : usual_finest);
+    const double h = finest > 0 ? finest : angles ? sample_interval / 1024 : usual_finest;
     // The coarsest run of each route must meet the sample times.
     const int coarsest = angles ? 4 : 8;
     const double steps = sample_interval / (coarsest * h);
@@ -161,7 +161,7 @@ class ReferenceMaker {
 
  private:
   // A route's path at the sample times, up to where it fails; h divides the sample interval. start:
-  // the number of a moved start; 0 is the scene's own.
+  // the number of the start `from`, 0 for the scene's own.
   const Path& path(const Route& route, double h, const State& from, int start) {
     const std::size_t samples = r_.times.size();
     const std::string name = route.name() + ", step " + number_text(h, 17) + " s, start " +
@@ -199,22 +199,21 @@ class ReferenceMaker {
   }
 
   const RouteRun& swing(double disturbance, double tolerance) {
-    return runs_.run(
-        "pendulum, start moved by " + number_text(disturbance) + ", tolerance " +
-            number_text(tolerance),
-        [&] {
-          runs_.tell("pendulum in angles, tolerance " + number_text(tolerance) + " ...");
-          Pendulum pendulum = pendulum_of(scene_, disturbance);
-          const double start = pendulum.energy(), scale = energy_scale(scene_);
-          RouteRun run;
-          for (const double time : r_.times) {
-            pendulum.advance(time, tolerance);
-            run.path.push_back(pendulum.positions());
-            const double drift = std::abs(pendulum.energy() - start) / scale;
-            run.energy_drift = std::max(run.energy_drift, drift);
-          }
-          return run;
-        });
+    const std::string name = "pendulum, start moved by " + number_text(disturbance) +
+                             ", tolerance " + number_text(tolerance);
+    return runs_.run(name, [&] {
+      runs_.tell("pendulum in angles, tolerance " + number_text(tolerance) + " ...");
+      Pendulum pendulum = pendulum_of(scene_, disturbance);
+      const double start = pendulum.energy(), scale = energy_scale(scene_);
+      RouteRun run;
+      for (const double time : r_.times) {
+        pendulum.advance(time, tolerance);
+        run.path.push_back(pendulum.positions());
+        const double drift = std::abs(pendulum.energy() - start) / scale;
+        run.energy_drift = std::max(run.energy_drift, drift);
+      }
+      return run;
+    });
   }
 
   Reference by_angles(double h) {
@@ -281,7 +280,12 @@ class ReferenceMaker {
     if (second.size() < r_.times.size())
       r_.second_method += ", until it fails after t = " +
                           number_text(second.empty() ? 0.0 : r_.times[second.size() - 1]) + " s";
-    if (r_.valid_until == r_.duration() && !scene_.triangles.empty()) add_rest_gap(parts);
+    if (r_.valid_until == r_.duration() && !scene_.triangles.empty()) {
+      for (const GapPart& part : parts)
+        for (const auto& [name, value] :
+             rest_difference(scene_, part.one->back(), part.other->back()))
+          r_.rest_gap[name] = std::max(r_.rest_gap[name], std::abs(value));
+    }
     // After the gap's samples, where a route has ended, distances are the first route's alone.
     for (std::size_t i = r_.gap.size(); i < r_.times.size(); ++i) {
       const Positions& there = i < second.size() ? second[i] : half[i];
@@ -291,28 +295,18 @@ class ReferenceMaker {
     return finished(fine);
   }
 
-  void add_rest_gap(const std::vector<GapPart>& parts) {
-    for (const GapPart& part : parts) {
-      for (const auto& [name, value] :
-           rest_difference(scene_, part.one->back(), part.other->back())) {
-        double& gap = r_.rest_gap[name];
-        gap = std::max(gap, std::abs(value));
-      }
-    }
-  }
-
   // Fills in the reference's gaps, at each sample that all paths reach, and valid_until.
   void add_gaps(const std::vector<GapPart>& parts) {
     std::size_t samples = r_.times.size();
-    for (const GapPart& part : parts)
-      samples = std::min({samples, part.one->size(), part.other->size()});
+    for (const auto& [name, one, other] : parts)
+      samples = std::min({samples, one->size(), other->size()});
     r_.gap.assign(samples, 0);
     r_.gap_max.assign(samples, 0);
-    for (const GapPart& part : parts) {
-      std::vector<double>& own = r_.gap_parts[part.name];
+    for (const auto& [name, one, other] : parts) {
+      std::vector<double>& own = r_.gap_parts[name];
       own.resize(samples, 0);
       for (std::size_t i = 0; i < samples; ++i) {
-        const Positions &x = (*part.one)[i], &y = (*part.other)[i];
+        const Positions &x = (*one)[i], &y = (*other)[i];
         own[i] = std::max(own[i], rms_distance(scene_, x, y));
         r_.gap[i] = std::max(r_.gap[i], own[i]);
         r_.gap_max[i] = std::max(r_.gap_max[i], max_distance(scene_, x, y));
@@ -333,12 +327,8 @@ class ReferenceMaker {
   Reference finished(const Path& path) {
     const auto valid = std::ranges::upper_bound(r_.times, r_.valid_until) - r_.times.begin();
     r_.positions.assign(path.begin(), path.begin() + valid);
-    if (r_.times.size() > most_samples) thin_out();
-    return std::move(r_);
-  }
-
-  // Every third sample, so that files of long motions stay small.
-  void thin_out() {
+    if (r_.times.size() <= most_samples) return std::move(r_);
+    // Every third sample, so that files of long motions stay small.
     const auto keep = [](auto& list) {
       std::size_t kept = 0;
       for (std::size_t i = 2; i < list.size(); i += 3) list[kept++] = list[i];
@@ -349,8 +339,8 @@ class ReferenceMaker {
     keep(r_.gap);
     keep(r_.gap_max);
     for (auto& [name, part] : r_.gap_parts) keep(part);
-    r_.valid_until = 0;
-    for (std::size_t i = 0; i < r_.positions.size(); ++i) r_.valid_until = r_.times[i];
+    r_.valid_until = r_.positions.empty() ? 0 : r_.times[r_.positions.size() - 1];
+    return std::move(r_);
   }
 
   std::shared_ptr<const SceneType> type_;
@@ -378,8 +368,8 @@ const RouteRun& RouteRuns::run(const std::string& name, const std::function<Rout
   if (const nlohmann::json* kept = journal_ ? journal_->find(name) : nullptr)
     return known_[name] = {path_of(kept->at("path")), kept->at("energy_drift").get<double>()};
   const RouteRun& run = known_[name] = compute();
-  if (!journal_) return run;
-  journal_->add(name, {{"energy_drift", run.energy_drift}, {"path", rows_of(run.path)}});
+  if (journal_)
+    journal_->add(name, {{"energy_drift", run.energy_drift}, {"path", rows_of(run.path)}});
   return run;
 }
 
