@@ -26,12 +26,9 @@ double root_mean_square(const std::vector<double>& numbers) {
 }  // namespace
 
 Judge::Judge(const Scene& scene, const Options& options)
-    : scene_(scene),
-      options_(options),
-      energy_(*scene.problem, energy_scale(scene), options.velocities) {
+    : scene_(scene), options_(options), energy_(scene, options.velocities) {
   options_.sample_every = std::max(1, options_.sample_every);
   if (options_.residual) probe_.emplace();
-  energy_.begin(scene.start);
 }
 
 void Judge::before(const State& state, double h) {
@@ -98,8 +95,8 @@ double Judge::after(const Positions& filtered, const State& state, double h, boo
   look_at_marks(state, h);
   if (counts && ++steps_ % options_.sample_every == 0) {
     sample(filtered, state);
-    if (const auto residuals = probe_ ? probe_->residuals() : std::nullopt)
-      running_.residuals.push_back({state.time, residuals->first, residuals->last});
+    if (const auto residual = probe_ ? probe_->residual(state.time) : std::nullopt)
+      running_.residuals.push_back(*residual);
   }
   if (options_.reference) compare(state);
   return range.most;
@@ -179,11 +176,6 @@ Measures Judge::finish() {
 
 // ---- The residual ----
 
-void ResidualProbe::watch() {
-  watching_ = true;
-  iterations_ = 0;
-}
-
 void ResidualProbe::iterate(const inextensible::EdgeConstraints& edges, int j,
                             const inextensible::Positions& x, const Eigen::VectorXd& multipliers) {
   if (!watching_) return;
@@ -207,11 +199,11 @@ double ResidualProbe::mean_residual(const Iterate& at) const {
   return f.colwise().norm().mean();
 }
 
-std::optional<ResidualProbe::Residuals> ResidualProbe::residuals() {
+std::optional<ResidualSample> ResidualProbe::residual(double time) {
   watching_ = false;
   if (iterations_ == 0) return {};
   const double first = mean_residual(first_);
-  return Residuals{first, iterations_ == 1 ? first : mean_residual(last_)};
+  return ResidualSample{time, first, iterations_ == 1 ? first : mean_residual(last_)};
 }
 
 }  // namespace harness
