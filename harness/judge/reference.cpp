@@ -54,12 +54,6 @@ std::string mismatch(const Reference& r) {
   return agree ? "" : "lists of different lengths";
 }
 
-template <int digits>
-double rounded(double value) {
-  constexpr double scale = digits == 9 ? 1e9 : 1e12;
-  return std::round(value * scale) / scale;
-}
-
 json summary_of(const Reference& r) {
   double squares = 0;
   for (std::size_t i = 0; i < r.positions.size(); ++i) squares += r.gap[i] * r.gap[i];
@@ -146,11 +140,12 @@ std::string reference_name(const std::string& scene, const SceneParameters& comp
          (changed.empty() ? "" : "-" + fnv1a(changed)) + ".json";
 }
 
-json rows_of(const Path& path, double (*coordinate)(double)) {
+json rows_of(const Path& path, double per_metre) {
   json rows = json::array();
   for (const Positions& x : path) {
     std::vector<double> row(x.data(), x.data() + x.size());
-    if (coordinate) std::transform(row.begin(), row.end(), row.begin(), coordinate);
+    if (per_metre > 0)
+      for (double& value : row) value = std::round(value * per_metre) / per_metre;
     rows.push_back(std::move(row));
   }
   return rows;
@@ -171,7 +166,7 @@ json to_json(const Reference& r) {
   write_fields(object, reference_fields, r);
   // A file holds the digits that its gaps leave standing.
   const double least = r.gap.empty() ? 0 : *std::min_element(r.gap.begin(), r.gap.end());
-  object["positions"] = rows_of(r.positions, least > 1e-7 ? rounded<9> : rounded<12>);
+  object["positions"] = rows_of(r.positions, least > 1e-7 ? 1e9 : 1e12);
   return object;
 }
 
@@ -203,9 +198,8 @@ std::string reference_path(const std::string& scene, const SceneParameters& comp
 }
 
 std::shared_ptr<ReferenceFolder> ReferenceFolder::usual() {
-  std::shared_ptr<ReferenceFolder> folder(new ReferenceFolder);
-  folder->folders_ = {local_place("references"), source_path("results/references")};
-  return folder;
+  return std::make_shared<ReferenceFolder>(
+      std::vector{local_place("references"), source_path("results/references")});
 }
 
 std::shared_ptr<const Reference> ReferenceFolder::find(const std::string& scene,

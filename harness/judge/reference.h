@@ -69,8 +69,8 @@ Reference read_reference(const std::string& path, const std::string& scene = "")
 Reference reference_of(const nlohmann::json& document, const std::string& path,
                        const std::string& scene = "");
 
-// A path as rows of coordinates, scaled by `coordinate` on the way out.
-nlohmann::json rows_of(const Path& path, double (*coordinate)(double) = nullptr);
+// A path as rows of coordinates, rounded to so many parts of a metre; 0: not rounded.
+nlohmann::json rows_of(const Path& path, double per_metre = 0);
 Path path_of(const nlohmann::json& rows);
 
 // Where a scene's reference is written: results/references, or beside the user's own results where
@@ -80,7 +80,7 @@ std::string reference_path(const std::string& scene, const SceneParameters& comp
 // The references of folders, read when they are asked for, and exact ones.
 class ReferenceFolder {
  public:
-  explicit ReferenceFolder(std::string folder) : folders_{std::move(folder)} {}
+  explicit ReferenceFolder(std::vector<std::string> folders) : folders_(std::move(folders)) {}
   static std::shared_ptr<ReferenceFolder> usual();  // the user's, and those of the program
   // Null if there is none. Not thread safe.
   std::shared_ptr<const Reference> find(const std::string& scene, const SceneParameters& complete);
@@ -90,8 +90,6 @@ class ReferenceFolder {
   nlohmann::json summaries() const;
 
  private:
-  ReferenceFolder() = default;
-
   std::vector<std::string> folders_;
   std::map<std::string, std::shared_ptr<const Reference>> known_;
 };
