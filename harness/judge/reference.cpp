@@ -36,7 +36,7 @@ constexpr auto reference_fields = std::tuple{
     field("observed_order", &Reference::observed_order, "", "under step halving", may_be_absent),
     field("expected_order", &Reference::expected_order, "", "by theory")};
 
-// Why it is of no scene of ours, or not of as many vertices; "": it is.
+// Why a reference fits no scene of this program; "": it fits one.
 std::string mismatch(const Reference& r) {
   const auto type = find_scene(r.scene);
   if (!type) return "no scene '" + shortened(r.scene, 40) + "'";
@@ -164,7 +164,7 @@ Path path_of(const json& rows) {
 json to_json(const Reference& r) {
   json object = {{"schema", reference_schema}};
   write_fields(object, reference_fields, r);
-  // A file holds the digits that its gaps leave standing.
+  // A file holds only digits above the reference's uncertainty.
   const double least = r.gap.empty() ? 0 : *std::min_element(r.gap.begin(), r.gap.end());
   object["positions"] = rows_of(r.positions, least > 1e-7 ? 1e9 : 1e12);
   return object;
@@ -208,10 +208,10 @@ std::shared_ptr<const Reference> ReferenceFolder::find(const std::string& scene,
   auto [place, fresh] = known_.try_emplace(key_of(name, complete), nullptr);
   if (fresh) place->second = exact_reference(scene, complete);
   for (const std::string& folder : folders_) {
-    const std::filesystem::path path = std::filesystem::path(folder) / name;
+    const std::string path = folder + "/" + name;
     if (!fresh || place->second || !std::filesystem::exists(path)) continue;
-    auto stored = std::make_shared<const Reference>(read_reference(path.string(), scene));
-    // A file from before a parameter, or its default, was what it is now is another motion's.
+    auto stored = std::make_shared<const Reference>(read_reference(path, scene));
+    // A file written before a parameter or its default changed describes another motion.
     if (stored->name() == name) place->second = std::move(stored);
   }
   return place->second;

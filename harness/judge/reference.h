@@ -65,7 +65,7 @@ nlohmann::json to_json(const Reference& reference);
 // Throws UsageError, naming the file, for anything that is not a reference.
 // scene: whose it is, by the name under which its files are found here; "": the document's own.
 Reference read_reference(const std::string& path, const std::string& scene = "");
-// The same of its document; `path` is for messages.
+// The same from a parsed document; `path` is for messages.
 Reference reference_of(const nlohmann::json& document, const std::string& path,
                        const std::string& scene = "");
 
@@ -84,7 +84,7 @@ class ReferenceFolder {
   static std::shared_ptr<ReferenceFolder> usual();  // the user's, and those of the program
   // Null if there is none. Not thread safe.
   std::shared_ptr<const Reference> find(const std::string& scene, const SceneParameters& complete);
-  // One that has no file.
+  // Adds a reference that has no file.
   void put(std::shared_ptr<const Reference> reference);
   // What a result file says of each reference that its errors were measured against.
   nlohmann::json summaries() const;

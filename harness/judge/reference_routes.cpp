@@ -23,14 +23,12 @@ using inextensible::State;
 namespace {
 
 constexpr double perturbation = 1e-10;  // of a start, over the scene's size
-constexpr double visible_move = 1e-5;   // the same, of a scene that comes to rest
-constexpr int moved_start_count = 2;    // how many disturbed starts a route is run from
+constexpr double visible_move = 1e-5;   // the same where a scene comes to rest
 constexpr double parted = 1e-2;         // gap at which a reference ends
 constexpr double pendulum_tolerance = 1e-13;
 constexpr std::size_t most_samples = 50;
 constexpr double usual_finest = sample_interval / 640;  // s, of scenes that are no pendulum
 
-// A route that steps.
 struct Route {
   std::string solver;
   double limit;  // of strain
@@ -90,11 +88,12 @@ Routes contact_routes(const Scene& scene, double h) {
   return {first, {"icd", first.limit, 1}, {}};
 }
 
-// Starts off the scene's by at most so many metres a coordinate, at random; pinned vertices stay.
+// Two starts whose coordinates differ from the scene's by random amounts of up to `by` metres;
+// pinned vertices stay.
 std::vector<State> moved_starts(const Scene& scene, double by) {
   const std::unique_ptr<gsl_rng, decltype(&gsl_rng_free)> random(gsl_rng_alloc(gsl_rng_mt19937),
                                                                  gsl_rng_free);
-  std::vector<State> starts(moved_start_count, scene.start);
+  std::vector<State> starts(2, scene.start);
   for (State& moved : starts) {
     for (Eigen::Index i = 0; i < moved.x.size(); ++i)
       moved.x.data()[i] += by * gsl_ran_flat(random.get(), -1, 1);
@@ -117,7 +116,7 @@ Pendulum pendulum_of(const Scene& scene, double disturbance) {
   return Pendulum(std::move(links), std::move(angles));
 }
 
-// p (finer) beyond itself by Richardson's rule, where the error is of this order.
+// Richardson extrapolation from two runs whose error is of this order.
 Path extrapolated(const Path& coarse, const Path& fine, int order) {
   Path path;
   const double factor = 1 / (std::pow(2.0, order) - 1);
@@ -132,7 +131,6 @@ struct GapPart {
   const Path *one, *other;
 };
 
-// A reference in the making.
 class ReferenceMaker {
  public:
   ReferenceMaker(const std::string& name, const SceneParameters& complete, RouteRuns& runs)
@@ -222,7 +220,13 @@ class ReferenceMaker {
     const Route& route = smooth_route;
     const Path &coarse = whole_path(route, 4 * h), &middle = whole_path(route, 2 * h),
                &fine = whole_path(route, h);
-    r_.observed_order = std::log2(mean_distance(coarse, middle) / mean_distance(middle, fine));
+    const auto distance = [this](const Path& a, const Path& b) {
+      double squares = 0;  // over all samples
+      for (std::size_t i = 0; i < a.size(); ++i)
+        squares += std::pow(rms_distance(scene_, a[i], b[i]), 2);
+      return std::sqrt(squares / static_cast<double>(a.size()));
+    };
+    r_.observed_order = std::log2(distance(coarse, middle) / distance(middle, fine));
     const Path second = extrapolated(middle, fine, route.order),
                second_half = extrapolated(coarse, middle, route.order);
     r_.method =
@@ -235,10 +239,8 @@ class ReferenceMaker {
     std::vector<GapPart> parts{{"routes", &swung.path, &second},
                                {"half_step", &swung.path, &half},
                                {"second_half_step", &second, &second_half}};
-    for (int k = 0; k < moved_start_count; ++k) {
-      const double disturbance = (k % 2 == 0 ? 1 : -1) * perturbation;
+    for (const double disturbance : {perturbation, -perturbation})
       parts.push_back({"moved_start", &swung.path, &swing(disturbance, pendulum_tolerance).path});
-    }
     add_gaps(parts);
     return finished(swung.path);
   }
@@ -314,14 +316,6 @@ class ReferenceMaker {
     }
     for (std::size_t i = 0; i < r_.gap.size() && r_.gap[i] < parted; ++i)
       r_.valid_until = r_.times[i];
-  }
-
-  // Root mean square over all samples, over the scene's size.
-  double mean_distance(const Path& a, const Path& b) const {
-    double squares = 0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-      squares += std::pow(rms_distance(scene_, a[i], b[i]), 2);
-    return std::sqrt(squares / static_cast<double>(a.size()));
   }
 
   Reference finished(const Path& path) {
