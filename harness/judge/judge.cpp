@@ -35,9 +35,8 @@ void Judge::before(const State& state, double h) {
   if (probe_ && (steps_ + 1) % options_.sample_every == 0) probe_->watch();
   // A sample in the middle of a step is interpolated.
   if (options_.reference && next_ < options_.reference->times.size() &&
-      options_.reference->times[next_] < state.time + h - time_tolerance) {
+      options_.reference->times[next_] < state.time + h - time_tolerance)
     start_ = state;
-  }
 }
 
 // Distances to the reference at the samples that the last step has reached.
@@ -63,7 +62,7 @@ void Judge::compare(const State& state) {
   }
 }
 
-// A run that ended before the last sample of the set has no error: others have that of all.
+// A run that ended before the last sure sample has no error: it would be one of fewer samples.
 void Judge::add_errors(Measures& measures) const {
   const ErrorAtLevel at = error_at(measures, headline_error);
   measures.error_samples = at.samples;
@@ -88,9 +87,8 @@ double Judge::after(const Positions& filtered, const State& state, double h, boo
   const StrainRange range = strain_range(*scene_.problem, filtered);
   running_.max_strain = std::max(running_.max_strain, range.most);
   running_.max_stretch = std::max(running_.max_stretch, range.stretch);
-  if (scene_.problem->collider()) {
+  if (scene_.problem->collider())
     raise(running_.max_strain_after_collision, strain_range(*scene_.problem, state.x).most);
-  }
   energy_.after(state, h);
   look_at_marks(state, h);
   if (counts && ++steps_ % options_.sample_every == 0) {
@@ -165,7 +163,7 @@ Measures Judge::finish() {
   measures.reference = options_.reference->name();
   measures.valid_until = options_.reference->valid_until;
   add_errors(measures);
-  // To six digits: a series is for pictures and sums, and files shall stay small.
+  // To six digits: a series is for pictures and sums, and files should stay small.
   for (ErrorSample& at : measures.error_series)
     for (double* value : {&at.time, &at.error, &at.worst, &at.gap, &at.worst_gap})
       *value = rounded_to(*value);

@@ -94,7 +94,7 @@ MeshFile read_mesh_file(const std::string& path) {
   return mesh;
 }
 
-// The files, read once; scenes of all parameters are made of them.
+// The files, read once for the scenes of all parameters.
 struct MeshModel {
   std::string identity;
   std::vector<Comparison> pins;
