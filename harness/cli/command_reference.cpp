@@ -57,7 +57,7 @@ struct ReferenceVerb : SweepOptions {
       return (!sweep.empty() && s.sweep != sweep) || (!scene.empty() && s.scene != scene);
     });
     if (suite.sweeps.empty()) throw UsageError("no sweep of the suite has such a scene");
-    ReferenceFolder nothing("");
+    ReferenceFolder nothing(std::vector<std::string>{});
     std::vector<SceneOfReference> scenes;
     for (const auto& [file, missing] : without_reference(plan(suite, {}), nothing))
       scenes.push_back(missing);

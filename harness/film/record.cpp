@@ -74,8 +74,7 @@ FilmRun take_of(const FilmSpec& spec, const Scene& scene, double energy_bound,
   State state = start_of(scene, backend, take.step);
   const auto stepper =
       inextensible::make_stepper(contestant.solver, scene.problem, {limit, 1, settings, &state});
-  EnergyRecord energy(*scene.problem, energy_scale(scene), backend.velocities);
-  energy.begin(scene.start);
+  EnergyRecord energy(scene, backend.velocities);
   Clock::time_point begin;
   const auto keep = [&](const State& at) {
     take.frames.push_back(at.x);

@@ -13,9 +13,10 @@ bool energy_can_only_fall(const inextensible::Problem& problem) {
   return (problem.collider() || problem.has_drag()) && !problem.body_motion();
 }
 
-EnergyRecord::EnergyRecord(const inextensible::Problem& problem, double scale,
-                           inextensible::Velocities velocities)
-    : problem_(problem), scale_(scale), velocities_(velocities) {}
+EnergyRecord::EnergyRecord(const Scene& scene, inextensible::Velocities velocities)
+    : problem_(*scene.problem), velocities_(velocities) {
+  begin(scene.start, energy_scale(scene));
+}
 
 void EnergyRecord::begin(const inextensible::State& state, double scale) {
   scale_ = scale;

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "harness/points/measures.h"
+#include "harness/scenes/scene.h"
 #include "solvers/methods/backend.h"
 
 namespace harness {
@@ -22,12 +23,10 @@ bool energy_can_only_fall(const inextensible::Problem& problem);
 
 class EnergyRecord {
  public:
-  // scale: J, what gains are divided by. The problem must outlive this.
-  EnergyRecord(const inextensible::Problem& problem, double scale,
-               inextensible::Velocities velocities);
+  // From the scene's start. Its problem must outlive this.
+  EnergyRecord(const Scene& scene, inextensible::Velocities velocities);
 
-  // What energy is compared with from here on.
-  void begin(const inextensible::State& state) { begin(state, scale_); }
+  // What energy is compared with from here on. scale: J, what gains are divided by.
   void begin(const inextensible::State& state, double scale);
   // After each accepted step of h seconds, and after the last one. Gives (E - E_0) / scale at the
   // end of the step, or of the one before it, if it has just become known.

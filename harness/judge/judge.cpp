@@ -26,21 +26,17 @@ double root_mean_square(const std::vector<double>& numbers) {
 }  // namespace
 
 Judge::Judge(const Scene& scene, const Options& options)
-    : scene_(scene),
-      options_(options),
-      energy_(*scene.problem, energy_scale(scene), options.velocities) {
+    : scene_(scene), options_(options), energy_(scene, options.velocities) {
   options_.sample_every = std::max(1, options_.sample_every);
   if (options_.residual) probe_.emplace();
-  energy_.begin(scene.start);
 }
 
 void Judge::before(const State& state, double h) {
   if (probe_ && (steps_ + 1) % options_.sample_every == 0) probe_->watch();
   // A sample in the middle of a step is interpolated.
   if (options_.reference && next_ < options_.reference->times.size() &&
-      options_.reference->times[next_] < state.time + h - time_tolerance) {
+      options_.reference->times[next_] < state.time + h - time_tolerance)
     start_ = state;
-  }
 }
 
 // Distances to the reference at the samples that the last step has reached.
@@ -66,7 +62,7 @@ void Judge::compare(const State& state) {
   }
 }
 
-// A run that ended before the last sample of the set has no error: others have that of all.
+// A run that ended before the last sure sample has no error: it would be one of fewer samples.
 void Judge::add_errors(Measures& measures) const {
   const ErrorAtLevel at = error_at(measures, headline_error);
   measures.error_samples = at.samples;
@@ -91,15 +87,14 @@ double Judge::after(const Positions& filtered, const State& state, double h, boo
   const StrainRange range = strain_range(*scene_.problem, filtered);
   running_.max_strain = std::max(running_.max_strain, range.most);
   running_.max_stretch = std::max(running_.max_stretch, range.stretch);
-  if (scene_.problem->collider()) {
+  if (scene_.problem->collider())
     raise(running_.max_strain_after_collision, strain_range(*scene_.problem, state.x).most);
-  }
   energy_.after(state, h);
   look_at_marks(state, h);
   if (counts && ++steps_ % options_.sample_every == 0) {
     sample(filtered, state);
-    if (const auto residuals = probe_ ? probe_->residuals() : std::nullopt)
-      running_.residuals.push_back({state.time, residuals->first, residuals->last});
+    if (const auto residual = probe_ ? probe_->residual(state.time) : std::nullopt)
+      running_.residuals.push_back(*residual);
   }
   if (options_.reference) compare(state);
   return range.most;
@@ -168,7 +163,7 @@ Measures Judge::finish() {
   measures.reference = options_.reference->name();
   measures.valid_until = options_.reference->valid_until;
   add_errors(measures);
-  // To six digits: a series is for pictures and sums, and files shall stay small.
+  // To six digits: a series is for pictures and sums, and files should stay small.
   for (ErrorSample& at : measures.error_series)
     for (double* value : {&at.time, &at.error, &at.worst, &at.gap, &at.worst_gap})
       *value = rounded_to(*value);
@@ -178,11 +173,6 @@ Measures Judge::finish() {
 }
 
 // ---- The residual ----
-
-void ResidualProbe::watch() {
-  watching_ = true;
-  iterations_ = 0;
-}
 
 void ResidualProbe::iterate(const inextensible::EdgeConstraints& edges, int j,
                             const inextensible::Positions& x, const Eigen::VectorXd& multipliers) {
@@ -207,11 +197,11 @@ double ResidualProbe::mean_residual(const Iterate& at) const {
   return f.colwise().norm().mean();
 }
 
-std::optional<ResidualProbe::Residuals> ResidualProbe::residuals() {
+std::optional<ResidualSample> ResidualProbe::residual(double time) {
   watching_ = false;
   if (iterations_ == 0) return {};
   const double first = mean_residual(first_);
-  return Residuals{first, iterations_ == 1 ? first : mean_residual(last_)};
+  return ResidualSample{time, first, iterations_ == 1 ? first : mean_residual(last_)};
 }
 
 }  // namespace harness

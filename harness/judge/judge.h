@@ -20,13 +20,14 @@ namespace harness {
 // directions. Iterates and multipliers are those of the solver that runs.
 class ResidualProbe final : public inextensible::IterateObserver {
  public:
-  struct Residuals {
-    double first = 0, last = 0;  // mean of |F| over vertices after the first, the last iteration, m
-  };
-  // Looks at the next step, until it is asked for its residuals; else iterates pass unseen.
-  void watch();
-  // Residual of the step since watch(), once accepted. Nothing if it needed no iteration.
-  std::optional<Residuals> residuals();
+  // Looks at the next step, until it is asked for its residual; else iterates pass unseen.
+  void watch() {
+    watching_ = true;
+    iterations_ = 0;
+  }
+  // Of the step since watch(), accepted at this time (s): the mean of |F| over vertices. Nothing if
+  // the step needed no iteration.
+  std::optional<ResidualSample> residual(double time);
 
   void iterate(const inextensible::EdgeConstraints& edges, int j, const inextensible::Positions& x,
                const Eigen::VectorXd& multipliers) override;

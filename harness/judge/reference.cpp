@@ -36,7 +36,7 @@ constexpr auto reference_fields = std::tuple{
     field("observed_order", &Reference::observed_order, "", "under step halving", may_be_absent),
     field("expected_order", &Reference::expected_order, "", "by theory")};
 
-// Why it is of no scene of ours, or not of as many vertices; "": it is.
+// Why a reference fits no scene of this program; "": it fits one.
 std::string mismatch(const Reference& r) {
   const auto type = find_scene(r.scene);
   if (!type) return "no scene '" + shortened(r.scene, 40) + "'";
@@ -52,12 +52,6 @@ std::string mismatch(const Reference& r) {
   const bool agree =
       r.gap.size() == times && r.gap_max.size() == times && r.positions.size() <= times;
   return agree ? "" : "lists of different lengths";
-}
-
-template <int digits>
-double rounded(double value) {
-  constexpr double scale = digits == 9 ? 1e9 : 1e12;
-  return std::round(value * scale) / scale;
 }
 
 json summary_of(const Reference& r) {
@@ -146,11 +140,12 @@ std::string reference_name(const std::string& scene, const SceneParameters& comp
          (changed.empty() ? "" : "-" + fnv1a(changed)) + ".json";
 }
 
-json rows_of(const Path& path, double (*coordinate)(double)) {
+json rows_of(const Path& path, double per_metre) {
   json rows = json::array();
   for (const Positions& x : path) {
     std::vector<double> row(x.data(), x.data() + x.size());
-    if (coordinate) std::transform(row.begin(), row.end(), row.begin(), coordinate);
+    if (per_metre > 0)
+      for (double& value : row) value = std::round(value * per_metre) / per_metre;
     rows.push_back(std::move(row));
   }
   return rows;
@@ -169,9 +164,9 @@ Path path_of(const json& rows) {
 json to_json(const Reference& r) {
   json object = {{"schema", reference_schema}};
   write_fields(object, reference_fields, r);
-  // A file holds the digits that its gaps leave standing.
+  // A file holds only digits above the reference's uncertainty.
   const double least = r.gap.empty() ? 0 : *std::min_element(r.gap.begin(), r.gap.end());
-  object["positions"] = rows_of(r.positions, least > 1e-7 ? rounded<9> : rounded<12>);
+  object["positions"] = rows_of(r.positions, least > 1e-7 ? 1e9 : 1e12);
   return object;
 }
 
@@ -203,9 +198,8 @@ std::string reference_path(const std::string& scene, const SceneParameters& comp
 }
 
 std::shared_ptr<ReferenceFolder> ReferenceFolder::usual() {
-  std::shared_ptr<ReferenceFolder> folder(new ReferenceFolder);
-  folder->folders_ = {local_place("references"), source_path("results/references")};
-  return folder;
+  return std::make_shared<ReferenceFolder>(
+      std::vector{local_place("references"), source_path("results/references")});
 }
 
 std::shared_ptr<const Reference> ReferenceFolder::find(const std::string& scene,
@@ -214,10 +208,10 @@ std::shared_ptr<const Reference> ReferenceFolder::find(const std::string& scene,
   auto [place, fresh] = known_.try_emplace(key_of(name, complete), nullptr);
   if (fresh) place->second = exact_reference(scene, complete);
   for (const std::string& folder : folders_) {
-    const std::filesystem::path path = std::filesystem::path(folder) / name;
+    const std::string path = folder + "/" + name;
     if (!fresh || place->second || !std::filesystem::exists(path)) continue;
-    auto stored = std::make_shared<const Reference>(read_reference(path.string(), scene));
-    // A file from before a parameter, or its default, was what it is now is another motion's.
+    auto stored = std::make_shared<const Reference>(read_reference(path, scene));
+    // A file written before a parameter or its default changed describes another motion.
     if (stored->name() == name) place->second = std::move(stored);
   }
   return place->second;

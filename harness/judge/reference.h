@@ -65,12 +65,12 @@ nlohmann::json to_json(const Reference& reference);
 // Throws UsageError, naming the file, for anything that is not a reference.
 // scene: whose it is, by the name under which its files are found here; "": the document's own.
 Reference read_reference(const std::string& path, const std::string& scene = "");
-// The same of its document; `path` is for messages.
+// The same from a parsed document; `path` is for messages.
 Reference reference_of(const nlohmann::json& document, const std::string& path,
                        const std::string& scene = "");
 
-// A path as rows of coordinates, scaled by `coordinate` on the way out.
-nlohmann::json rows_of(const Path& path, double (*coordinate)(double) = nullptr);
+// A path as rows of coordinates, rounded to so many parts of a metre; 0: not rounded.
+nlohmann::json rows_of(const Path& path, double per_metre = 0);
 Path path_of(const nlohmann::json& rows);
 
 // Where a scene's reference is written: results/references, or beside the user's own results where
@@ -80,18 +80,16 @@ std::string reference_path(const std::string& scene, const SceneParameters& comp
 // The references of folders, read when they are asked for, and exact ones.
 class ReferenceFolder {
  public:
-  explicit ReferenceFolder(std::string folder) : folders_{std::move(folder)} {}
+  explicit ReferenceFolder(std::vector<std::string> folders) : folders_(std::move(folders)) {}
   static std::shared_ptr<ReferenceFolder> usual();  // the user's, and those of the program
   // Null if there is none. Not thread safe.
   std::shared_ptr<const Reference> find(const std::string& scene, const SceneParameters& complete);
-  // One that has no file.
+  // Adds a reference that has no file.
   void put(std::shared_ptr<const Reference> reference);
   // What a result file says of each reference that its errors were measured against.
   nlohmann::json summaries() const;
 
  private:
-  ReferenceFolder() = default;
-
   std::vector<std::string> folders_;
   std::map<std::string, std::shared_ptr<const Reference>> known_;
 };

@@ -23,14 +23,12 @@ using inextensible::State;
 namespace {
 
 constexpr double perturbation = 1e-10;  // of a start, over the scene's size
-constexpr double visible_move = 1e-5;   // the same, of a scene that comes to rest
-constexpr int moved_start_count = 2;    // how many disturbed starts a route is run from
+constexpr double visible_move = 1e-5;   // the same where a scene comes to rest
 constexpr double parted = 1e-2;         // gap at which a reference ends
 constexpr double pendulum_tolerance = 1e-13;
 constexpr std::size_t most_samples = 50;
 constexpr double usual_finest = sample_interval / 640;  // s, of scenes that are no pendulum
 
-// A route that steps.
 struct Route {
   std::string solver;
   double limit;  // of strain
@@ -90,11 +88,12 @@ Routes contact_routes(const Scene& scene, double h) {
   return {first, {"icd", first.limit, 1}, {}};
 }
 
-// Starts off the scene's by at most so many metres a coordinate, at random; pinned vertices stay.
+// Two starts whose coordinates differ from the scene's by random amounts of up to `by` metres;
+// pinned vertices stay.
 std::vector<State> moved_starts(const Scene& scene, double by) {
   const std::unique_ptr<gsl_rng, decltype(&gsl_rng_free)> random(gsl_rng_alloc(gsl_rng_mt19937),
                                                                  gsl_rng_free);
-  std::vector<State> starts(moved_start_count, scene.start);
+  std::vector<State> starts(2, scene.start);
   for (State& moved : starts) {
     for (Eigen::Index i = 0; i < moved.x.size(); ++i)
       moved.x.data()[i] += by * gsl_ran_flat(random.get(), -1, 1);
@@ -117,7 +116,7 @@ Pendulum pendulum_of(const Scene& scene, double disturbance) {
   return Pendulum(std::move(links), std::move(angles));
 }
 
-// p (finer) beyond itself by Richardson's rule, where the error is of this order.
+// Richardson extrapolation from two runs whose error is of this order.
 Path extrapolated(const Path& coarse, const Path& fine, int order) {
   Path path;
   const double factor = 1 / (std::pow(2.0, order) - 1);
@@ -126,13 +125,12 @@ Path extrapolated(const Path& coarse, const Path& fine, int order) {
   return path;
 }
 
-// Two paths that would be one if a reference were without error.
+// Two paths that would be the same if a reference had no error.
 struct GapPart {
   const char* name;
   const Path *one, *other;
 };
 
-// A reference in the making.
 class ReferenceMaker {
  public:
   ReferenceMaker(const std::string& name, const SceneParameters& complete, RouteRuns& runs)
@@ -148,7 +146,7 @@ class ReferenceMaker {
 
   Reference by_two_routes(double finest) {
     const bool angles = type_->pendulum;
-    const double h = finest > 0 ? finest : (angles ? sample_interval / 1024 : usual_finest);
+    const double h = finest > 0 ? finest : angles ? sample_interval / 1024 : usual_finest;
     // The coarsest run of each route must meet the sample times.
     const int coarsest = angles ? 4 : 8;
     const double steps = sample_interval / (coarsest * h);
@@ -161,7 +159,7 @@ class ReferenceMaker {
 
  private:
   // A route's path at the sample times, up to where it fails; h divides the sample interval. start:
-  // the number of a moved start; 0 is the scene's own.
+  // the number of the start `from`, 0 for the scene's own.
   const Path& path(const Route& route, double h, const State& from, int start) {
     const std::size_t samples = r_.times.size();
     const std::string name = route.name() + ", step " + number_text(h, 17) + " s, start " +
@@ -199,22 +197,21 @@ class ReferenceMaker {
   }
 
   const RouteRun& swing(double disturbance, double tolerance) {
-    return runs_.run(
-        "pendulum, start moved by " + number_text(disturbance) + ", tolerance " +
-            number_text(tolerance),
-        [&] {
-          runs_.tell("pendulum in angles, tolerance " + number_text(tolerance) + " ...");
-          Pendulum pendulum = pendulum_of(scene_, disturbance);
-          const double start = pendulum.energy(), scale = energy_scale(scene_);
-          RouteRun run;
-          for (const double time : r_.times) {
-            pendulum.advance(time, tolerance);
-            run.path.push_back(pendulum.positions());
-            const double drift = std::abs(pendulum.energy() - start) / scale;
-            run.energy_drift = std::max(run.energy_drift, drift);
-          }
-          return run;
-        });
+    const std::string name = "pendulum, start moved by " + number_text(disturbance) +
+                             ", tolerance " + number_text(tolerance);
+    return runs_.run(name, [&] {
+      runs_.tell("pendulum in angles, tolerance " + number_text(tolerance) + " ...");
+      Pendulum pendulum = pendulum_of(scene_, disturbance);
+      const double start = pendulum.energy(), scale = energy_scale(scene_);
+      RouteRun run;
+      for (const double time : r_.times) {
+        pendulum.advance(time, tolerance);
+        run.path.push_back(pendulum.positions());
+        const double drift = std::abs(pendulum.energy() - start) / scale;
+        run.energy_drift = std::max(run.energy_drift, drift);
+      }
+      return run;
+    });
   }
 
   Reference by_angles(double h) {
@@ -223,7 +220,13 @@ class ReferenceMaker {
     const Route& route = smooth_route;
     const Path &coarse = whole_path(route, 4 * h), &middle = whole_path(route, 2 * h),
                &fine = whole_path(route, h);
-    r_.observed_order = std::log2(mean_distance(coarse, middle) / mean_distance(middle, fine));
+    const auto distance = [this](const Path& a, const Path& b) {
+      double squares = 0;  // over all samples
+      for (std::size_t i = 0; i < a.size(); ++i)
+        squares += std::pow(rms_distance(scene_, a[i], b[i]), 2);
+      return std::sqrt(squares / static_cast<double>(a.size()));
+    };
+    r_.observed_order = std::log2(distance(coarse, middle) / distance(middle, fine));
     const Path second = extrapolated(middle, fine, route.order),
                second_half = extrapolated(coarse, middle, route.order);
     r_.method =
@@ -236,10 +239,8 @@ class ReferenceMaker {
     std::vector<GapPart> parts{{"routes", &swung.path, &second},
                                {"half_step", &swung.path, &half},
                                {"second_half_step", &second, &second_half}};
-    for (int k = 0; k < moved_start_count; ++k) {
-      const double disturbance = (k % 2 == 0 ? 1 : -1) * perturbation;
+    for (const double disturbance : {perturbation, -perturbation})
       parts.push_back({"moved_start", &swung.path, &swing(disturbance, pendulum_tolerance).path});
-    }
     add_gaps(parts);
     return finished(swung.path);
   }
@@ -281,7 +282,12 @@ class ReferenceMaker {
     if (second.size() < r_.times.size())
       r_.second_method += ", until it fails after t = " +
                           number_text(second.empty() ? 0.0 : r_.times[second.size() - 1]) + " s";
-    if (r_.valid_until == r_.duration() && !scene_.triangles.empty()) add_rest_gap(parts);
+    if (r_.valid_until == r_.duration() && !scene_.triangles.empty()) {
+      for (const GapPart& part : parts)
+        for (const auto& [name, value] :
+             rest_difference(scene_, part.one->back(), part.other->back()))
+          r_.rest_gap[name] = std::max(r_.rest_gap[name], std::abs(value));
+    }
     // After the gap's samples, where a route has ended, distances are the first route's alone.
     for (std::size_t i = r_.gap.size(); i < r_.times.size(); ++i) {
       const Positions& there = i < second.size() ? second[i] : half[i];
@@ -291,28 +297,18 @@ class ReferenceMaker {
     return finished(fine);
   }
 
-  void add_rest_gap(const std::vector<GapPart>& parts) {
-    for (const GapPart& part : parts) {
-      for (const auto& [name, value] :
-           rest_difference(scene_, part.one->back(), part.other->back())) {
-        double& gap = r_.rest_gap[name];
-        gap = std::max(gap, std::abs(value));
-      }
-    }
-  }
-
   // Fills in the reference's gaps, at each sample that all paths reach, and valid_until.
   void add_gaps(const std::vector<GapPart>& parts) {
     std::size_t samples = r_.times.size();
-    for (const GapPart& part : parts)
-      samples = std::min({samples, part.one->size(), part.other->size()});
+    for (const auto& [name, one, other] : parts)
+      samples = std::min({samples, one->size(), other->size()});
     r_.gap.assign(samples, 0);
     r_.gap_max.assign(samples, 0);
-    for (const GapPart& part : parts) {
-      std::vector<double>& own = r_.gap_parts[part.name];
+    for (const auto& [name, one, other] : parts) {
+      std::vector<double>& own = r_.gap_parts[name];
       own.resize(samples, 0);
       for (std::size_t i = 0; i < samples; ++i) {
-        const Positions &x = (*part.one)[i], &y = (*part.other)[i];
+        const Positions &x = (*one)[i], &y = (*other)[i];
         own[i] = std::max(own[i], rms_distance(scene_, x, y));
         r_.gap[i] = std::max(r_.gap[i], own[i]);
         r_.gap_max[i] = std::max(r_.gap_max[i], max_distance(scene_, x, y));
@@ -322,23 +318,11 @@ class ReferenceMaker {
       r_.valid_until = r_.times[i];
   }
 
-  // Root mean square over all samples, over the scene's size.
-  double mean_distance(const Path& a, const Path& b) const {
-    double squares = 0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-      squares += std::pow(rms_distance(scene_, a[i], b[i]), 2);
-    return std::sqrt(squares / static_cast<double>(a.size()));
-  }
-
   Reference finished(const Path& path) {
     const auto valid = std::ranges::upper_bound(r_.times, r_.valid_until) - r_.times.begin();
     r_.positions.assign(path.begin(), path.begin() + valid);
-    if (r_.times.size() > most_samples) thin_out();
-    return std::move(r_);
-  }
-
-  // Every third sample, so that files of long motions stay small.
-  void thin_out() {
+    if (r_.times.size() <= most_samples) return std::move(r_);
+    // Every third sample, so that files of long motions stay small.
     const auto keep = [](auto& list) {
       std::size_t kept = 0;
       for (std::size_t i = 2; i < list.size(); i += 3) list[kept++] = list[i];
@@ -349,8 +333,8 @@ class ReferenceMaker {
     keep(r_.gap);
     keep(r_.gap_max);
     for (auto& [name, part] : r_.gap_parts) keep(part);
-    r_.valid_until = 0;
-    for (std::size_t i = 0; i < r_.positions.size(); ++i) r_.valid_until = r_.times[i];
+    r_.valid_until = r_.positions.empty() ? 0 : r_.times[r_.positions.size() - 1];
+    return std::move(r_);
   }
 
   std::shared_ptr<const SceneType> type_;
@@ -378,8 +362,8 @@ const RouteRun& RouteRuns::run(const std::string& name, const std::function<Rout
   if (const nlohmann::json* kept = journal_ ? journal_->find(name) : nullptr)
     return known_[name] = {path_of(kept->at("path")), kept->at("energy_drift").get<double>()};
   const RouteRun& run = known_[name] = compute();
-  if (!journal_) return run;
-  journal_->add(name, {{"energy_drift", run.energy_drift}, {"path", rows_of(run.path)}});
+  if (journal_)
+    journal_->add(name, {{"energy_drift", run.energy_drift}, {"path", rows_of(run.path)}});
   return run;
 }
 

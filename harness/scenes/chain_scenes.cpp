@@ -77,18 +77,13 @@ Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> laguerre(int masses, int options)
   return solver;
 }
 
-int chosen_mode(const SceneParameters& p) {
-  const int mode = whole(p, "mode"), masses = whole(p) - 1;
-  if (mode > masses)
-    throw std::invalid_argument("mode " + std::to_string(mode) + " of a chain of " +
-                                std::to_string(masses) + " links");
-  return mode;
-}
-
 // Vertex 0 is the pin. Deflections in x are the free end's times L_i(x_k) cos(omega t), i counted
 // from the free end; heights follow from the links.
 Positions swung(const SceneParameters& p, double time) {
-  const int masses = whole(p) - 1, mode = chosen_mode(p);
+  const int masses = whole(p) - 1, mode = whole(p, "mode");
+  if (mode > masses)
+    throw std::invalid_argument("mode " + std::to_string(mode) + " of a chain of " +
+                                std::to_string(masses) + " links");
   const double link = row_link(p);
   const auto laguerres = laguerre(masses, Eigen::ComputeEigenvectors);
   const double omega = std::sqrt(p.at("gravity") / link * laguerres.eigenvalues()(mode - 1));
@@ -161,18 +156,14 @@ Eigen::Matrix2Xd whirled(const SceneParameters& p, double radius) {
   return at;
 }
 
-// In the plane x-y, with the pin on the axis.
-Eigen::Matrix2Xd whirling_shape(const SceneParameters& p) {
+// At first in the plane x-y, with the pin on the axis.
+Positions whirling(const SceneParameters& p, double time) {
   double low = 1e-6 * p.at("length"), high = p.at("length");
   for (int k = 0; k < 200; ++k) {
     const double radius = 0.5 * (low + high);
     (whirled(p, radius)(0, 0) < 0 ? low : high) = radius;
   }
-  return whirled(p, 0.5 * (low + high));
-}
-
-Positions whirling(const SceneParameters& p, double time) {
-  const Eigen::Matrix2Xd shape = whirling_shape(p);
+  const Eigen::Matrix2Xd shape = whirled(p, 0.5 * (low + high));
   Positions x = Positions::Zero(3, shape.cols());
   x.topRows(2) = shape;
   x.col(0).setZero();

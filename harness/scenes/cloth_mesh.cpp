@@ -160,31 +160,19 @@ struct Refinement {
   }
 };
 
-std::vector<Side> sides_of_quads(const ClothMesh& mesh) {
+template <class Face>
+std::set<Side> sides_of(const std::vector<Face>& faces) {
   std::set<Side> sides;
-  for (const auto& quad : mesh.quads)
-    for (std::size_t k = 0; k < 4; ++k) sides.insert(side_of(quad, k));
-  return {sides.begin(), sides.end()};
-}
-
-// Sides of triangles that no quad has.
-std::vector<Side> sides_of_triangles(const ClothMesh& mesh) {
-  const std::vector<Side> quads = sides_of_quads(mesh);
-  std::set<Side> sides;
-  for (const auto& triangle : mesh.triangles) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Side s = side_of(triangle, k);
-      if (!std::binary_search(quads.begin(), quads.end(), s)) sides.insert(s);
-    }
-  }
-  return {sides.begin(), sides.end()};
+  for (const Face& face : faces)
+    for (std::size_t k = 0; k < face.size(); ++k) sides.insert(side_of(face, k));
+  return sides;
 }
 
 // Yarns are three vertices in a row: two of the sides that meet at the middle vertex are opposite
 // each other. There are none where yarns end or five sides meet.
 std::vector<std::array<int, 3>> yarns_of(const ClothMesh& mesh) {
   std::vector<std::set<int>> ends(mesh.vertices.size());
-  for (const auto& [a, b] : sides_of_quads(mesh)) {
+  for (const auto& [a, b] : sides_of(mesh.quads)) {
     ends[a].insert(b);
     ends[b].insert(a);
   }
@@ -285,9 +273,9 @@ Draft cloth_draft(const ClothMesh& mesh, const SceneParameters& p) {
     parts.mass.push_back(p.at("density") * area[v]);
     if (p.at("drag") > 0) parts.drag.push_back(p.at("drag") * area[v]);
   }
-  for (const auto& [a, b] : sides_of_quads(mesh)) {
+  const std::set<Side> yarn_sides = sides_of(mesh.quads);
+  for (const auto& [a, b] : yarn_sides)
     if (!held(a, b)) draft.constrain(a, b, length(a, b));
-  }
   if (p.at("shear") > 0) {
     inextensible::Springs springs;
     const auto join = [&](int a, int b) {
@@ -300,7 +288,8 @@ Draft cloth_draft(const ClothMesh& mesh, const SceneParameters& p) {
       join(a, c);
       join(b, d);
     }
-    for (const auto& [a, b] : sides_of_triangles(mesh)) join(a, b);
+    for (const auto& [a, b] : sides_of(mesh.triangles))
+      if (!yarn_sides.contains({a, b})) join(a, b);
     if (!springs.edges.empty()) parts.shear = std::move(springs);
   }
   if (p.at("bending") > 0) {
@@ -321,8 +310,7 @@ Draft cloth_draft(const ClothMesh& mesh, const SceneParameters& p) {
 }
 
 std::pair<int, int> count_cloth(const ClothMesh& mesh) {
-  const std::vector<Side> sides = sides_of_quads(mesh);
-  const auto constrained = std::count_if(sides.begin(), sides.end(), [&](const Side& s) {
+  const auto constrained = std::ranges::count_if(sides_of(mesh.quads), [&](const Side& s) {
     return !mesh.held[s.first] || !mesh.held[s.second];
   });
   return {static_cast<int>(mesh.vertices.size()), static_cast<int>(constrained)};

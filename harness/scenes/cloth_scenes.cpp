@@ -65,16 +65,7 @@ void place_unevenly(Scene& scene, const SceneParameters& p, double y) {
   scene.mirrors.clear();
 }
 
-// A polygonal sphere, centred at the origin, if it has a radius.
-void add_ball(Draft& cloth, const SceneParameters& p) {
-  if (!(p.at("radius") > 0)) return;
-  cloth.parts.collider = std::make_shared<const inextensible::TriangleCollider>(
-      inextensible::icosphere(Eigen::Vector3d::Zero(), p.at("radius"), whole(p, "subdivisions")),
-      p.at("friction"));
-  cloth.parts.contact_inside = p.at("contact") != 0;
-}
-
-// Above the ball.
+// Above a polygonal sphere, centred at the origin, if that has a radius.
 Scene build_drape(const SceneParameters& p) {
   const double y = p.at("radius") + p.at("gap");
   Draft cloth = vertex_square(p, y);
@@ -88,7 +79,12 @@ Scene build_drape(const SceneParameters& p) {
     cloth.scene.staggered = false;
   }
   if (value_or_zero(p, "implicit") != 0) cloth.parts.implicit_forces = true;
-  add_ball(cloth, p);
+  if (p.at("radius") > 0) {
+    cloth.parts.collider = std::make_shared<const inextensible::TriangleCollider>(
+        inextensible::icosphere(Eigen::Vector3d::Zero(), p.at("radius"), whole(p, "subdivisions")),
+        p.at("friction"));
+    cloth.parts.contact_inside = p.at("contact") != 0;
+  }
   return finished(std::move(cloth));
 }
 
@@ -102,11 +98,6 @@ Scene build_patch(const SceneParameters& p) {
 
 constexpr double above_the_table = 1e-6;  // m, as nothing may start in an obstacle
 
-// m, of what slides.
-double stopping_distance(const SceneParameters& p) {
-  return p.at("speed") * p.at("speed") / (2 * p.at("friction") * p.at("gravity"));
-}
-
 // A fabric in air that swings down from two corners, in waves, which leave no symmetry.
 Scene build_curtain(const SceneParameters& p) {
   Draft cloth = vertex_square(p, 0);
@@ -119,7 +110,8 @@ Scene build_curtain(const SceneParameters& p) {
 Scene build_block(const SceneParameters& p) {
   Draft cloth = vertex_square(p, above_the_table);
   cloth.scene.start.v.row(0).setConstant(p.at("speed"));
-  const double wide = p.at("side") + 2 * stopping_distance(p), deep = p.at("side");
+  const double way = p.at("speed") * p.at("speed") / (2 * p.at("friction") * p.at("gravity"));
+  const double wide = p.at("side") + 2 * way, deep = p.at("side");
   inextensible::TriangleMesh box;
   for (const double y : {-deep, 0.0})
     for (const auto& [x, z] : {std::pair(-wide, -wide), {wide, -wide}, {wide, wide}, {-wide, wide}})

@@ -20,18 +20,13 @@ struct Fabric {
 // Matsudaira, Masuda, Wada and Yokura 2015, "Shape Factor of Flared Skirts Compared with That of
 // Circular Fabrics", Journal of Textile Engineering 61(6), tables 1 and 2: Kawabata's instruments,
 // means of warp and weft; mg/cm^2 and gf cm^2/cm.
-inline constexpr std::array<Fabric, 4> fabrics = [] {
-  std::array<Fabric, 4> measured{{{"cotton", 12.38, 0.118, 82.9},     // broadcloth
-                                  {"wool", 16.29, 0.067, 49.8},       // tropical
-                                  {"polyester", 11.65, 0.077, 50.7},  // tropical
-                                  {"polyester_faille", 10.43, 0.019, 28.3}}};
-  constexpr double gram_force = 9.80665e-3, centimetre = 1e-2;  // N, m
-  for (Fabric& fabric : measured) {
-    fabric.density *= 1e-6 / (centimetre * centimetre);
-    fabric.bending *= gram_force * centimetre * centimetre / centimetre;
-  }
-  return measured;
-}();
+inline constexpr double mg_cm2 = 1e-6 / (1e-2 * 1e-2);                // kg/m^2
+inline constexpr double gf_cm2_cm = 9.80665e-3 * 1e-2 * 1e-2 / 1e-2;  // N m
+inline constexpr std::array<Fabric, 4> fabrics{
+    {{"cotton", 12.38 * mg_cm2, 0.118 * gf_cm2_cm, 82.9},     // broadcloth
+     {"wool", 16.29 * mg_cm2, 0.067 * gf_cm2_cm, 49.8},       // tropical
+     {"polyester", 11.65 * mg_cm2, 0.077 * gf_cm2_cm, 50.7},  // tropical
+     {"polyester_faille", 10.43 * mg_cm2, 0.019 * gf_cm2_cm, 28.3}}};
 
 inline const Fabric& fabric(std::string_view name) {  // throws std::out_of_range
   const auto* const found = std::ranges::find(fabrics, name, &Fabric::name);

@@ -94,39 +94,16 @@ MeshFile read_mesh_file(const std::string& path) {
   return mesh;
 }
 
-// What a scene's name says.
-struct MeshParts {
-  std::string file, body;
-  std::vector<Comparison> pins;
-};
-
-MeshParts parts_of(const std::string& name) {
-  MeshParts parts;
-  std::istringstream words(name.substr(prefix.size()));
-  std::getline(words, parts.file, ',');
-  for (std::string word; std::getline(words, word, ',');) {
-    if (word.starts_with("pins=")) {
-      parts.pins = read_pins(without_spaces(word.substr(5)));
-    } else if (word.starts_with("body=")) {
-      parts.body = word.substr(5);
-    } else {
-      throw UsageError("scene '" + name + "': '" + word +
-                       "' must be pins=... or body=..., as in mesh:shirt.obj,pins=y>1.2");
-    }
-  }
-  return parts;
-}
-
-// The files, read once; scenes of all parameters are made of them.
+// The files, read once for the scenes of all parameters.
 struct MeshModel {
   std::string identity;
-  MeshParts parts;
+  std::vector<Comparison> pins;
   ClothMesh cloth;
   inextensible::TriangleMesh body;
 
   bool pinned(const Eigen::Vector3d& x) const {
-    return !parts.pins.empty() && std::all_of(parts.pins.begin(), parts.pins.end(),
-                                              [&](const Comparison& one) { return one.holds(x); });
+    return !pins.empty() &&
+           std::ranges::all_of(pins, [&](const Comparison& one) { return one.holds(x); });
   }
 };
 
@@ -148,27 +125,38 @@ inextensible::TriangleMesh body_of(const MeshFile& file) {
 
 std::shared_ptr<const MeshModel> read_model(const std::string& name) {
   auto model = std::make_shared<MeshModel>();
-  model->parts = parts_of(name);
-  const MeshParts& parts = model->parts;
+  std::string file, body;
+  std::istringstream words(name.substr(prefix.size()));
+  std::getline(words, file, ',');
+  for (std::string word; std::getline(words, word, ',');) {
+    if (word.starts_with("pins=")) {
+      model->pins = read_pins(without_spaces(word.substr(5)));
+    } else if (word.starts_with("body=")) {
+      body = word.substr(5);
+    } else {
+      throw UsageError("scene '" + name + "': '" + word +
+                       "' must be pins=... or body=..., as in mesh:shirt.obj,pins=y>1.2");
+    }
+  }
   std::string content = name.substr(std::min(name.find(",pins="), name.size()));
   content.erase(std::min(content.find(",body="), content.size()));
-  content = read_file(parts.file, "mesh") + content;
-  if (!parts.body.empty()) content += read_file(parts.body, "mesh");
+  content = read_file(file, "mesh") + content;
+  if (!body.empty()) content += read_file(body, "mesh");
   model->identity = fnv1a(content);
-  model->cloth = cloth_of(read_mesh_file(parts.file), parts.file);
-  if (!parts.body.empty()) {
-    model->body = body_of(read_mesh_file(parts.body));
+  model->cloth = cloth_of(read_mesh_file(file), file);
+  if (!body.empty()) {
+    model->body = body_of(read_mesh_file(body));
     try {
       (void)inextensible::TriangleCollider(model->body, 0);
     } catch (const std::invalid_argument& error) {
-      throw UsageError("'" + parts.body + "' is no body to collide with: " + error.what());
+      throw UsageError("'" + body + "' is no body to collide with: " + error.what());
     }
   }
-  const auto& x = model->cloth.vertices;
-  const bool holds = std::any_of(x.begin(), x.end(), [&](auto& v) { return model->pinned(v); });
-  if (!parts.pins.empty() && !holds)
+  const bool holds =
+      std::ranges::any_of(model->cloth.vertices, [&](auto& v) { return model->pinned(v); });
+  if (!model->pins.empty() && !holds)
     throw UsageError("scene '" + name + "': no vertex is where the pins are");
-  if (!holds && parts.body.empty())
+  if (!holds && body.empty())
     throw UsageError("scene '" + name +
                      "': nothing is pinned and nothing is below; add ,pins=y>... or ,body=FILE");
   return model;
@@ -233,7 +221,7 @@ SceneType mesh_scene(const std::string& name) {
               {.density = 0.15, .shear = 20, .bending = 1e-5, .drag = 0.05}, 1),
           .build = [model](const SceneParameters& p) { return build_mesh(*model, p); },
           .counts = [model](const SceneParameters& p) { return count_cloth(cloth_for(*model, p)); },
-          .like = model->parts.body.empty() ? "patch" : "drape",
+          .like = model->body.triangles.empty() ? "patch" : "drape",
           .identity = model->identity};
 }
 

@@ -3,24 +3,6 @@
 #include <cmath>
 
 namespace harness {
-namespace {
-
-// Bends every warp and weft yarn of a square: `rigidity` of the cloth, N m, each yarn's is that
-// times the width that falls to it. Along the edges half a width.
-void bend_yarns(inextensible::ProblemParts& parts, int n, double l, double rigidity) {
-  const auto vertex = [n](int i, int j) { return i * n + j; };
-  for (int i = 0; i < n; ++i) {
-    const double width = i == 0 || i == n - 1 ? 0.5 * l : l;
-    for (int j = 0; j + 2 < n; ++j) {
-      parts.bending.push_back(inextensible::yarn_bending(vertex(i, j), vertex(i, j + 1),
-                                                         vertex(i, j + 2), l, l, rigidity * width));
-      parts.bending.push_back(inextensible::yarn_bending(vertex(j, i), vertex(j + 1, i),
-                                                         vertex(j + 2, i), l, l, rigidity * width));
-    }
-  }
-}
-
-}  // namespace
 
 Draft::Draft(int vertices, const SceneParameters& p) {
   parts.gravity = {0, -value_or_zero(p, "gravity"), 0};
@@ -97,7 +79,17 @@ Draft vertex_square(const SceneParameters& p, double y) {
     parts.shear = std::move(diagonals);
   }
   const double bending = value_or_zero(p, "bending"), drag = value_or_zero(p, "drag");
-  if (bending > 0) bend_yarns(parts, n, l, bending);
+  for (int i = 0; bending > 0 && i < n; ++i) {
+    // A yarn's rigidity is the cloth's times the width that falls to it: half along the edges.
+    const double rigidity = bending * (i == 0 || i == n - 1 ? 0.5 * l : l);
+    const auto bend = [&](int a, int b, int c) {
+      parts.bending.push_back(inextensible::yarn_bending(a, b, c, l, l, rigidity));
+    };
+    for (int j = 0; j + 2 < n; ++j) {
+      bend(vertex(i, j), vertex(i, j + 1), vertex(i, j + 2));
+      bend(vertex(j, i), vertex(j + 1, i), vertex(j + 2, i));
+    }
+  }
   if (drag > 0) parts.drag.assign(n * n, drag * l * l);
   parts.implicit_forces = fabric;
   scene.size = side;

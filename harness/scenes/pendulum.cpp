@@ -13,19 +13,14 @@ namespace harness {
 
 Pendulum::Pendulum(Links links, std::vector<double> angles)
     : links_(std::move(links)), state_(std::move(angles)) {
-  const std::size_t n = state_.size();
-  state_.resize(2 * n, 0.0);
-  for (auto* vector : {&scratch_.cosine, &scratch_.sine, &scratch_.diagonal, &scratch_.off,
-                       &scratch_.right, &scratch_.tension}) {
-    vector->resize(n);
-  }
+  state_.resize(2 * state_.size(), 0.0);
 }
 
-bool Pendulum::rates(const double* state, double* rate) {
+bool Pendulum::rates(const double* state, double* rate) const {
   const std::size_t n = links_.mass.size();
   const double* theta = state;
   const double* omega = state + n;
-  auto& [cosine, sine, diagonal, off, right, tension] = scratch_;
+  std::vector<double> cosine(n), sine(n), diagonal(n), off(n), right(n), tension(n);
   for (std::size_t i = 0; i < n; ++i) {
     cosine[i] = std::cos(theta[i]);
     sine[i] = std::sin(theta[i]);

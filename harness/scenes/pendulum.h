@@ -36,15 +36,12 @@ class Pendulum {
 
   // Rates (theta', theta'') of a state (theta, theta'), 2 N numbers each. False if the tensions
   // cannot be found.
-  bool rates(const double* state, double* rate);
+  bool rates(const double* state, double* rate) const;
 
  private:
   Links links_;
   std::vector<double> state_;  // theta, then theta'
   double time_ = 0;
-  struct {
-    std::vector<double> cosine, sine, diagonal, off, right, tension;
-  } scratch_;           // of rates
   double step_ = 1e-6;  // s, the integrator's next one
 };
 

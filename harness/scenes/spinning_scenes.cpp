@@ -23,8 +23,7 @@ Scene spinning(Draft draft, const Vector3d& axis, const SceneParameters& p) {
     plane.image.push_back(i);
   }
   scene.mirrors = {std::move(plane)};
-  scene.conserves_energy = true;
-  return finished(std::move(draft));
+  return released(std::move(draft), {});
 }
 
 template <Scene (*build)(const SceneParameters&)>

@@ -97,10 +97,11 @@ std::vector<Ring> column(const SceneParameters& p) {
   return capped(radius, {bottom, dome * radius}, wall, {top, dome * radius});
 }
 
-// A body's motion from rest: `place` gives the angle about y and the x and z of its axis.
+// Moves the body from rest: `place` gives the angle about y and the x and z of its axis.
 template <class Place>
-inextensible::BodyMotion from_rest(double period, const Place& place) {
-  return [=](double time) {
+void move_body(Draft& draft, double period, const Place& place) {
+  draft.scene.energy_bound = std::numeric_limits<double>::infinity();  // the body does work
+  draft.parts.body_motion = [=](double time) {
     const double phase = 2 * pi * time / period;
     const double strength = time < 0.5 * period ? 0.5 * (1 - std::cos(phase)) : 1;
     const auto [angle, x, z] = place(strength, phase);
@@ -111,35 +112,12 @@ inextensible::BodyMotion from_rest(double period, const Place& place) {
   };
 }
 
-// Oscillates along x and turns about y.
-inextensible::BodyMotion swaying(const SceneParameters& p) {
-  return from_rest(p.at("period"),
-                   [sway = p.at("sway"), turn = p.at("turn")](double strength, double phase) {
-                     const double wave = strength * std::sin(phase);
-                     return std::array{turn * wave, sway * wave, 0.0};
-                   });
-}
-
-// A figure of eight on the ground, and a turn to either side.
-inextensible::BodyMotion walking(const SceneParameters& p) {
-  return from_rest(
-      p.at("period"), [walk = p.at("walk"), turn = p.at("turn")](double strength, double phase) {
-        return std::array{strength * turn * std::sin(phase), strength * walk * std::sin(phase),
-                          0.5 * strength * walk * std::sin(2 * phase)};
-      });
-}
-
 Draft worn(const ClothMesh& cloth, const std::vector<Ring>& body, const SceneParameters& p) {
   Draft draft = cloth_draft(cloth, p);
   draft.parts.collider = std::make_shared<const inextensible::TriangleCollider>(
       lathed(body, whole(p, "segments")), p.at("friction"));
   draft.scene.size = p.at("length");
   return draft;
-}
-
-void set_moving(Draft& draft, inextensible::BodyMotion motion) {
-  draft.parts.body_motion = std::move(motion);
-  draft.scene.energy_bound = std::numeric_limits<double>::infinity();  // the body does work
 }
 
 // ---- Cloth ----
@@ -198,7 +176,12 @@ Scene build_garment(const SceneParameters& p) {
     throw std::invalid_argument("'rim' of " + std::to_string(p.at("rim")) +
                                 " m: must be wider than the waist");
   Draft draft = worn(skirt(p), torso(p), p);
-  if (p.at("sway") != 0 || p.at("turn") != 0) set_moving(draft, swaying(p));
+  const double sway = p.at("sway"), turn = p.at("turn");
+  if (sway != 0 || turn != 0)
+    move_body(draft, p.at("period"), [=](double strength, double phase) {
+      const double wave = strength * std::sin(phase);
+      return std::array{turn * wave, sway * wave, 0.0};
+    });
   draft.scene.marks = {{"rim", 0, 0}, {"rim_across", whole(p) / 2, 0}};
   return finished(std::move(draft));
 }
@@ -220,7 +203,12 @@ ClothMesh cape(const SceneParameters& p) {
 
 Scene build_cape(const SceneParameters& p) {
   Draft draft = worn(cape(p), column(p), p);
-  set_moving(draft, walking(p));
+  const double walk = p.at("walk"), turn = p.at("turn");
+  // A figure of eight on the ground, and a turn to either side.
+  move_body(draft, p.at("period"), [=](double strength, double phase) {
+    return std::array{strength * turn * std::sin(phase), strength * walk * std::sin(phase),
+                      0.5 * strength * walk * std::sin(2 * phase)};
+  });
   draft.parts.pins_follow_body = true;
   return finished(std::move(draft));
 }

@@ -28,9 +28,8 @@ TrialJudge::TrialJudge(const Trial& trial, const inextensible::Backend& backend,
       mass_(problem_.total_mass()),
       free_(backend.conserves_momentum && problem_.pinned().empty() && !problem_.collider()),
       energy_known_(strain_range(problem_, trial.scene.start.x).most <= trial.strain_limit),
-      energy_(problem_, energy_scale(trial.scene), backend.velocities) {
+      energy_(trial.scene, backend.velocities) {
   judged_ = trial.energy_tolerance >= 0 && !trial.disturb && energy_.scale() > 0;
-  energy_.begin(trial.scene.start);
 }
 
 bool TrialJudge::fail(Outcome outcome, const std::string& why, Promise broken) {

@@ -13,34 +13,29 @@
 namespace harness {
 namespace {
 
-using inextensible::Problem;
-using inextensible::ProblemParts;
 using inextensible::State;
 using inextensible::Velocities;
 
 constexpr double g = 10;
 
-// One edge of 1 m, two vertices of 1 kg.
-const Problem pair_of_vertices = [] {
-  ProblemParts parts;
+// One edge of 1 m, two vertices of 1 kg, thrown upwards with this speed, m/s.
+Scene pair_of_vertices(double speed = 0) {
+  inextensible::ProblemParts parts;
   parts.mass = {1, 1};
   parts.edges = {{0, 1}};
   parts.rest_length = {1};
   parts.gravity = {0, -g, 0};
-  return Problem(std::move(parts));
-}();
-
-State at_rest() {
-  State state;
-  state.x.setZero(3, 2);
-  state.x(0, 1) = 1;
-  state.v.setZero(3, 2);
-  return state;
+  Scene scene;
+  scene.problem = std::make_shared<const inextensible::Problem>(std::move(parts));
+  scene.start.x.setZero(3, 2);
+  scene.start.x(0, 1) = 1;
+  scene.start.v.setZero(3, 2);
+  scene.start.v.row(1).setConstant(speed);
+  return scene;
 }
 
-// Thrown upwards with 2 m/s: at t = n h where it is, with the mean velocity of the step before.
-State thrown(double t, double h) {
-  State state = at_rest();
+// Where such a pair of 2 m/s is at t = n h, with the mean velocity of the step before.
+State thrown(State state, double t, double h) {
   state.time = t;
   state.x.row(1).setConstant(2 * t - 0.5 * g * t * t);
   state.v.row(1).setConstant(2 - g * (t - 0.5 * h));
@@ -48,31 +43,26 @@ State thrown(double t, double h) {
 }
 
 TEST(EnergyRecord, DoesNotTakeTheLagOfHalfStepVelocitiesForAGain) {
-  const double scale = 2 * g;
+  const Scene scene = pair_of_vertices(2);
   for (const double h : {0.04, 0.02}) {
-    EnergyRecord halves(pair_of_vertices, scale, Velocities::half_step);
-    EnergyRecord whole(pair_of_vertices, scale, Velocities::whole_step);
-    State start = at_rest();
-    start.v.row(1).setConstant(2);
-    halves.begin(start);
-    whole.begin(start);
+    EnergyRecord halves(scene, Velocities::half_step), whole(scene, Velocities::whole_step);
     for (int n = 1; n * h < 0.2; ++n) {  // it rises, and slows down
-      halves.after(thrown(n * h, h), h);
-      whole.after(thrown(n * h, h), h);
+      halves.after(thrown(scene.start, n * h, h), h);
+      whole.after(thrown(scene.start, n * h, h), h);
     }
     halves.finish();
     // What is left is of second order: m (g h / 2)^2 / 2 of each vertex. At the last step, without
     // one after it, energy is underestimated.
-    const double second = 2 * 0.5 * std::pow(0.5 * g * h, 2) / scale;
+    const double second = 2 * 0.5 * std::pow(0.5 * g * h, 2) / halves.scale();
     EXPECT_NEAR(halves.gain(), second, 1e-12);
     EXPECT_GT(whole.gain(), 10 * second) << "the lag itself, of first order";
   }
 }
 
 TEST(EnergyRecord, SeesAVibrationThatTurnsRoundInEveryStep) {
-  EnergyRecord record(pair_of_vertices, 2 * g, Velocities::half_step);
-  State state = at_rest();
-  record.begin(state);
+  const Scene scene = pair_of_vertices();
+  EnergyRecord record(scene, Velocities::half_step);
+  State state = scene.start;
   for (int n = 1; n <= 10; ++n) {
     state.time = 0.01 * n;
     state.v.row(0) << (n % 2 == 0 ? 3 : -3), (n % 2 == 0 ? -3 : 3);
@@ -83,9 +73,9 @@ TEST(EnergyRecord, SeesAVibrationThatTurnsRoundInEveryStep) {
 
 // The gain of a loss throughout is negative.
 TEST(EnergyRecord, TellsWhenEnergyWasHighest) {
-  EnergyRecord record(pair_of_vertices, 2 * g, Velocities::whole_step);
-  State state = at_rest();
-  record.begin(state);
+  const Scene scene = pair_of_vertices();
+  EnergyRecord record(scene, Velocities::whole_step);
+  State state = scene.start;
   for (int n = 1; n <= 5; ++n) {
     state.time = 0.1 * n;
     state.x.row(1).setConstant(n == 3 ? -0.25 : -1);
@@ -102,15 +92,15 @@ TEST(EnergyRecord, TellsWhenEnergyWasHighest) {
 
 // Steps of different lengths: the end of the first is nearer the middle of the shorter one.
 TEST(EnergyRecord, InterpolatesBetweenUnequalSteps) {
-  EnergyRecord record(pair_of_vertices, 1, Velocities::half_step);
-  State state = at_rest();
-  record.begin(state);
+  const Scene scene = pair_of_vertices();
+  EnergyRecord record(scene, Velocities::half_step);
+  State state = scene.start;
   state.v(0, 0) = 2;  // 2 J
   EXPECT_FALSE(record.after(state, 0.3));
   state.v(0, 0) = 4;  // 8 J
   const auto gain = record.after(state, 0.1);
   ASSERT_TRUE(gain);
-  EXPECT_NEAR(*gain, (0.1 * 2 + 0.3 * 8) / 0.4, 1e-12);
+  EXPECT_NEAR(*gain, (0.1 * 2 + 0.3 * 8) / 0.4 / (2 * g), 1e-12);
 }
 
 }  // namespace

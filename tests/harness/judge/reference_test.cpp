@@ -10,6 +10,7 @@
 #include <random>
 
 #include "harness/base/errors.h"
+#include "harness/base/files.h"
 #include "harness/base/interrupt.h"
 #include "harness/judge/reference_routes.h"
 #include "harness/scenes/pendulum.h"
@@ -81,8 +82,8 @@ TEST(Pendulum, OfEightyVerticesKeepsItsEnergyAndMeetsTheKnownPlaces) {
   // As the scene `chain`: 1 kg over 80 vertices, of which the pinned one bears its share.
   Pendulum pendulum({std::vector(79, 1.0 / 80), std::vector(79, 1.0 / 79), 9.81},
                     std::vector(79, 0.0));
-  ReferenceFolder references(std::string(SOURCE_DIR) + "/results/references");
-  const auto stored = references.find("chain", parameters("chain"));
+  const auto stored = ReferenceFolder(std::vector{source_path("results/references")})
+                          .find("chain", parameters("chain"));
   ASSERT_TRUE(stored);
   const Scene scene = testing::build("chain");
   for (std::size_t i = 0; i < stored->times.size() && stored->times[i] < 0.5; ++i) {
@@ -170,7 +171,7 @@ TEST(Reference, SurvivesItsFile) {
   const std::string folder = ::testing::TempDir() + "references";
   std::filesystem::create_directories(folder);
   std::ofstream(folder + "/" + reference_name("chain", r.parameters)) << to_json(r);
-  ReferenceFolder references(folder);
+  ReferenceFolder references(std::vector{folder});
   const auto again = references.find("chain", r.parameters);
   ASSERT_TRUE(again);
   EXPECT_EQ(again->times, r.times);
@@ -191,7 +192,7 @@ TEST(Reference, SurvivesItsFile) {
   // A file under the name of parameters that it is not of does not stand for them.
   const auto five = parameters("chain", {{"n", 5}, {"duration", 0.2}});
   std::ofstream(folder + "/" + reference_name("chain", five)) << to_json(r);
-  EXPECT_FALSE(ReferenceFolder(folder).find("chain", five));
+  EXPECT_FALSE(ReferenceFolder(std::vector{folder}).find("chain", five));
 
   std::ofstream(folder + "/broken.json") << "{\"schema\": \"inextensible-reference/2\"}";
   EXPECT_THROW(static_cast<void>(read_reference(folder + "/broken.json")), UsageError);

@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "harness/base/files.h"
 #include "harness/run/calibration.h"
 #include "harness/run/fake_machine.h"
 #include "harness/run/machine_noise.h"
@@ -111,7 +112,7 @@ TEST_P(DrapeErrors, FallWithTheStepToTheReferencesGap) {
   if (inextensible::testing::sanitized) GTEST_SKIP() << "too slow with sanitizers";
   RunLimits limits{.timed = false};
   limits.references =
-      std::make_shared<ReferenceFolder>(std::string(SOURCE_DIR) + "/results/references");
+      std::make_shared<ReferenceFolder>(std::vector{source_path("results/references")});
   double before = 1;
   for (const double h : {0.02, 0.01, 0.005, 0.0025, 0.00125}) {
     PointSpec spec = spec_at("drape", {{"n", 15}}, GetParam(), h);

@@ -14,11 +14,12 @@
 #include "harness/scenes/scene.h"
 #include "solvers/registry.h"
 #include "support/refusal.h"
+#include "support/scenes.h"
 
 namespace harness {
 namespace {
 
-using inextensible::Problem;
+using testing::build;
 
 std::string file_with(const std::string& name, const std::string& text) {
   const std::string path = ::testing::TempDir() + name;
@@ -50,33 +51,26 @@ std::string square(int n, const std::function<bool(int, int)>& cut = nullptr) {
   return text.str();
 }
 
-struct Built {
-  explicit Built(const std::string& name, const SceneParameters& given = {})
-      : type(mesh_scene(name)),
-        parameters(complete_parameters(type, given)),
-        scene(type.build(parameters)) {}
-  const Problem& problem() const { return *scene.problem; }
-  // Pairs of places, and what belongs to each: the same whatever the numbers of vertices are.
-  using Place = std::array<long, 3>;
-  Place place(int v) const {
-    const Eigen::Vector3d x = scene.start.x.col(v);
-    return {std::lround(1e6 * x.x()), std::lround(1e6 * x.y()), std::lround(1e6 * x.z())};
-  }
-  std::set<std::pair<Place, Place>> pairs(const std::vector<inextensible::Edge>& edges) const {
-    std::set<std::pair<Place, Place>> all;
-    for (const auto& [a, b] : edges) all.insert(std::minmax(place(a), place(b)));
-    return all;
-  }
-  SceneType type;
-  SceneParameters parameters;
-  Scene scene;
-};
+// The places that edges join: the same whatever the numbers of vertices are.
+using Place = std::array<long, 3>;
+std::set<std::pair<Place, Place>> joined_places(const Scene& scene,
+                                                const std::vector<inextensible::Edge>& edges) {
+  const auto place = [&](int v) -> Place {
+    const Eigen::Vector3d x = 1e6 * scene.start.x.col(v);
+    return {std::lround(x.x()), std::lround(x.y()), std::lround(x.z())};
+  };
+  std::set<std::pair<Place, Place>> all;
+  for (const auto& [a, b] : edges) all.insert(std::minmax(place(a), place(b)));
+  return all;
+}
 
 TEST(MeshScene, OfASquareIsThePatch) {
   const int n = 7;
-  const Built mesh("mesh:" + file_with("square.obj", square(n)) + ",pins=y>-0.01andx<0.01",
-                   {{"density", 0.2}});
-  const Problem& problem = mesh.problem();
+  const auto type =
+      find_scene("mesh:" + file_with("square.obj", square(n)) + ",pins=y>-0.01andx<0.01");
+  const SceneParameters p = complete_parameters(*type, {{"density", 0.2}});
+  const Scene mesh = type->build(p);
+  const inextensible::Problem& problem = *mesh.problem;
   EXPECT_EQ(problem.vertices(), n * n);
   EXPECT_EQ(problem.constraints(), 2 * n * (n - 1));
   EXPECT_EQ(problem.pinned().size(), 1);
@@ -85,7 +79,7 @@ TEST(MeshScene, OfASquareIsThePatch) {
   EXPECT_NEAR(problem.total_mass(), 0.2, 1e-12);
   EXPECT_EQ(problem.bending().size(), 2 * n * (n - 2));
   for (const double l : problem.rest_length()) EXPECT_NEAR(l, 1.0 / (n - 1), 1e-12);
-  EXPECT_EQ(mesh.type.counts(mesh.parameters), std::pair(n * n, 2 * n * (n - 1)));
+  EXPECT_EQ(type->counts(p), std::pair(n * n, 2 * n * (n - 1)));
 }
 
 TEST(MeshScene, OfTrianglesIsThatOfTheQuadsTheyMake) {
@@ -93,20 +87,24 @@ TEST(MeshScene, OfTrianglesIsThatOfTheQuadsTheyMake) {
   for (const auto& cut : {std::function<bool(int, int)>([](int, int) { return true; }),
                           std::function<bool(int, int)>([](int i, int j) { return (i + j) % 2; }),
                           std::function<bool(int, int)>([&](int, int) { return random() % 2; })}) {
-    const Built quads("mesh:" + file_with("quads.obj", square(6)) + ",pins=y>-0.01");
-    const Built triangles("mesh:" + file_with("triangles.obj", square(6, cut)) + ",pins=y>-0.01");
-    EXPECT_EQ(quads.pairs(quads.problem().edges()), triangles.pairs(triangles.problem().edges()));
-    EXPECT_EQ(quads.pairs(quads.problem().shear()->edges),
-              triangles.pairs(triangles.problem().shear()->edges));
+    const Scene quads = build("mesh:" + file_with("quads.obj", square(6)) + ",pins=y>-0.01");
+    const Scene triangles =
+        build("mesh:" + file_with("triangles.obj", square(6, cut)) + ",pins=y>-0.01");
+    EXPECT_EQ(joined_places(quads, quads.problem->edges()),
+              joined_places(triangles, triangles.problem->edges()));
+    EXPECT_EQ(joined_places(quads, quads.problem->shear()->edges),
+              joined_places(triangles, triangles.problem->shear()->edges));
   }
 }
 
 TEST(MeshScene, CutFinerIsTheFinerSquare) {
-  const Built coarse("mesh:" + file_with("coarse.obj", square(4)) + ",pins=y>-0.01", {{"n", 3}});
-  const Built fine("mesh:" + file_with("fine.obj", square(10)) + ",pins=y>-0.01");
-  EXPECT_EQ(coarse.pairs(coarse.problem().edges()), fine.pairs(fine.problem().edges()));
-  EXPECT_NEAR(coarse.problem().total_mass(), fine.problem().total_mass(), 1e-12);
-  EXPECT_EQ(coarse.problem().bending().size(), fine.problem().bending().size());
+  const Scene coarse =
+      build("mesh:" + file_with("coarse.obj", square(4)) + ",pins=y>-0.01", {{"n", 3}});
+  const Scene fine = build("mesh:" + file_with("fine.obj", square(10)) + ",pins=y>-0.01");
+  EXPECT_EQ(joined_places(coarse, coarse.problem->edges()),
+            joined_places(fine, fine.problem->edges()));
+  EXPECT_NEAR(coarse.problem->total_mass(), fine.problem->total_mass(), 1e-12);
+  EXPECT_EQ(coarse.problem->bending().size(), fine.problem->bending().size());
 }
 
 // Three flat triangles around a vertex: no two of them make a good quad, so that springs hold them,
@@ -120,14 +118,14 @@ TEST(MeshScene, TrianglesThatMakeNoQuadsHoldWithSprings) {
   text << "f 1 2 3\nf 1 3 4\nf 1 4 2\n";
   const std::string name = "mesh:" + file_with("three.obj", text.str()) + ",pins=x>0.9999";
   for (const int n : {1, 2, 5}) {
-    const Built mesh(name, {{"n", n}});
+    const Scene mesh = build(name, {{"n", n}});
     const int vertices = 1 + 3 * n * (n + 1) / 2, triangles = 3 * n * n;
-    EXPECT_EQ(mesh.problem().vertices(), vertices);
-    EXPECT_EQ(mesh.scene.triangles.size(), triangles);
-    EXPECT_NEAR(mesh.problem().total_mass(), 0.15 * 0.75 * std::sqrt(3.0), 1e-5);
-    EXPECT_EQ(mesh.problem().constraints(), 0);
-    ASSERT_TRUE(mesh.problem().shear());
-    EXPECT_EQ(mesh.problem().shear()->edges.size(), vertices + triangles - 1);  // Euler
+    EXPECT_EQ(mesh.problem->vertices(), vertices);
+    EXPECT_EQ(mesh.triangles.size(), triangles);
+    EXPECT_NEAR(mesh.problem->total_mass(), 0.15 * 0.75 * std::sqrt(3.0), 1e-5);
+    EXPECT_EQ(mesh.problem->constraints(), 0);
+    ASSERT_TRUE(mesh.problem->shear());
+    EXPECT_EQ(mesh.problem->shear()->edges.size(), vertices + triangles - 1);  // Euler
   }
 }
 
@@ -137,15 +135,15 @@ TEST(MeshScene, FallsOntoItsBodyAndKeepsItsLimit) {
       "v -1 -1 -1\nv 2 -1 -1\nv 2 -1 1\nv -1 -1 1\nv -1 -1.5 -1\nv 2 -1.5 -1\nv 2 -1.5 1\nv -1 "
       "-1.5 1\nf 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
   // It hangs above, its lowest row on the box, and folds.
-  const Built mesh("mesh:" + file_with("sheet.obj", square(8)) + ",body=" + body,
-                   {{"duration", 0.6}});
+  const Scene mesh =
+      build("mesh:" + file_with("sheet.obj", square(8)) + ",body=" + body, {{"duration", 0.6}});
   const auto stepper =
-      inextensible::make_stepper("fast_projection", mesh.scene.problem, {.strain_limit = 0.01});
-  inextensible::State state = mesh.scene.start;
+      inextensible::make_stepper("fast_projection", mesh.problem, {.strain_limit = 0.01});
+  inextensible::State state = mesh.start;
   for (int i = 0; i < 60; ++i) ASSERT_TRUE(stepper->advance(state, 0.01));
   EXPECT_GE(state.x.row(1).minCoeff(), -1 - 1e-5);
   EXPECT_LT(state.x.row(1).minCoeff(), -0.99);
-  EXPECT_LE(strain_range(mesh.problem(), state.x).most, 0.01 + 1e-9);
+  EXPECT_LE(strain_range(*mesh.problem, state.x).most, 0.01 + 1e-9);
 }
 
 TEST(MeshScene, WhatCanBeNoClothIsRefusedInALine) {
@@ -172,7 +170,7 @@ TEST(MeshScene, WhatCanBeNoClothIsRefusedInALine) {
        "between vertices 1 and 2 belongs to more than two faces"},
   };
   for (const auto& [scene, part] : cases) {
-    const std::string said = refusal_of([&name = scene] { (void)mesh_scene(name); });
+    const std::string said = refusal_of([&name = scene] { (void)find_scene(name); });
     EXPECT_NE(said.find(part), std::string::npos) << scene << ": " << said;
   }
   EXPECT_EQ(with_mesh_parts("mesh:a.obj", "y > 1.2 and x < 0", "b.obj"),

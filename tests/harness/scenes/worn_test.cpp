@@ -19,6 +19,10 @@ using testing::build;
 
 constexpr int around = 24;
 
+Scene still_garment() {
+  return build("garment", {{"n", around}, {"sway", 0}, {"turn", 0}, {"friction", 0.05}});
+}
+
 // By yarns, and a step that a tight rim refuses is halved: fast projection is thrown off a tight
 // rim in one build and not in another.
 State after(const Scene& scene, double limit, double seconds) {
@@ -34,8 +38,7 @@ State after(const Scene& scene, double limit, double seconds) {
 // It slides down until its rim is taut where the body is as wide as that: circumference over
 // 2 pi is the rim's radius and at most the strain limit more.
 TEST(Garment, RestsWhereTheBodyIsAsWideAsItsRimMayBe) {
-  const Scene scene =
-      build("garment", {{"n", around}, {"sway", 0}, {"turn", 0}, {"friction", 0.05}});
+  const Scene scene = still_garment();
   const double limit = 0.01, rim = 0.13, waist = 0.115, hips = 0.137, drop = 0.12;
   const State state = after(scene, limit, 1.5);
   for (int v = 0; v < around; ++v) {
@@ -49,9 +52,7 @@ TEST(Garment, RestsWhereTheBodyIsAsWideAsItsRimMayBe) {
 }
 
 TEST(Garment, SlipsPastHipsThatItsRimMayPass) {
-  const Scene scene =
-      build("garment", {{"n", around}, {"sway", 0}, {"turn", 0}, {"friction", 0.05}});
-  EXPECT_LT(after(scene, 0.1, 1).x.row(1).head(around).maxCoeff(), -0.12);
+  EXPECT_LT(after(still_garment(), 0.1, 1).x.row(1).head(around).maxCoeff(), -0.12);
 }
 
 TEST(Garment, ItsBodyStartsAtRestWhereItIs) {
