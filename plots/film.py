@@ -148,7 +148,7 @@ def moving(film: Film) -> Iterator[Image.Image]:
 def save_mp4(film: Film, out: Path) -> None:
     if not shutil.which("ffmpeg"):
         raise OSError("ffmpeg missing (Debian: apt-get install ffmpeg); .webp needs none")
-    command = ["ffmpeg", "-y", "-loglevel", "error", "-framerate", str(film.rate), "-i", "sheet-%d.ppm",
+    command = ["ffmpeg", "-nostdin", "-y", "-loglevel", "error", "-framerate", str(film.rate), "-i", "sheet-%d.ppm",
                "-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "20", str(out.absolute())]
     for number, image in enumerate(moving(film)):  # cropped to even width and height, which the format requires
         image.crop((0, 0, image.width // 2 * 2, image.height // 2 * 2)).save(film.folder / f"sheet-{number}.ppm")
