@@ -36,7 +36,7 @@ TEST_F(Files, TheUsersOwnBesideTheOutputStay) {
   for (const std::string& name : names) EXPECT_EQ(content(name), "mine") << name;
 }
 
-// Also to a file that is yet to be made; both names of one output are one lock.
+// A link to a file that does not exist yet does too; both names of an output share one lock.
 TEST_F(Files, ALinkStaysALink) {
   fs::create_directory(at("there"));
   std::ofstream(at("there/result.json")) << "old";
@@ -93,8 +93,7 @@ TEST_F(Files, PermissionsOfAFileThatIsReplacedAreKept) {
   EXPECT_EQ(fs::status(at("b.json")).permissions(), fs::perms(0644));
 }
 
-// Two writers of one file at a time: one of the two texts is there in the end, whole, and nothing
-// beside it.
+// Two writers of one file at a time leave one of the two texts, whole, and no other file.
 TEST_F(Files, TwoWritersDoNotMix) {
   check_writable(at("f"));
   const std::string a(1 << 16, 'a'), b(1 << 16, 'b');

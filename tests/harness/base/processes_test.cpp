@@ -38,7 +38,7 @@ TEST(ChildProcess, AnAnswerThatCannotBeReadIsHowItEnded) {
 }
 
 TEST(ChildProcess, OneThatLeavesAChildBehindDoesNotHoldUpItsParentAndTakesItAlong) {
-  // This process takes orphans: where nobody does, one that was killed is there for ever.
+  // This process adopts orphans: otherwise a killed one may stay a zombie for ever.
   ASSERT_EQ(prctl(PR_SET_CHILD_SUBREAPER, 1), 0);
   const ChildOutcome outcome = run_in_child(
       [](Heartbeat& heartbeat) -> std::string {
@@ -61,8 +61,8 @@ TEST(ChildProcess, OneThatLeavesAChildBehindDoesNotHoldUpItsParentAndTakesItAlon
       << "its parent waited for the process that it left behind";
 }
 
-// Stopped for longer than the time-out and its grace (0.8 s), and running for less by all that a
-// busy machine may add.
+// The parent is stopped for longer than the time-out and its grace period (0.8 s), but runs for
+// much less, which leaves room for a busy machine.
 TEST(ChildProcess, TimeInWhichTheParentWasStoppedIsNotTheChilds) {
   std::array<int, 2> begun{}, finish{};
   ASSERT_EQ(pipe(begun.data()) + pipe(finish.data()), 0);

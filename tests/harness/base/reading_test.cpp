@@ -1,5 +1,5 @@
-// What comes from outside: no text loses a document, and no expression takes for ever or makes a
-// long message.
+// Input from outside: no text makes a document unreadable, and no expression runs for ever or
+// causes a long message.
 #include <gtest/gtest.h>
 
 #include "harness/base/json.h"
