@@ -25,7 +25,7 @@ class Files : public testing::Test {
   TemporaryFolder folder_{"files-test"};
 };
 
-TEST_F(Files, TheUsersOwnBesideTheOutputStay) {
+TEST_F(Files, FilesBesideTheOutputStay) {
   const std::string names[] = {at("a.json.partial"), at("a.json.XXXXXX"), at("a.json.tmp")};
   for (const std::string& name : names) std::ofstream(name) << "mine";
   check_writable(at("a.json"));

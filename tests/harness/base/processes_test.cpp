@@ -37,7 +37,7 @@ TEST(ChildProcess, AnAnswerThatCannotBeReadIsHowItEnded) {
   }
 }
 
-TEST(ChildProcess, OneThatLeavesAChildBehindDoesNotHoldUpItsParentAndTakesItAlong) {
+TEST(ChildProcess, ADescendantLeftBehindIsKilledAndDelaysNobody) {
   // This process adopts orphans: otherwise a killed one may stay a zombie for ever.
   ASSERT_EQ(prctl(PR_SET_CHILD_SUBREAPER, 1), 0);
   const ChildOutcome outcome = run_in_child(
@@ -122,7 +122,7 @@ TEST_F(Lock, IsHeldByOneProcessAndNotInTheWayOfProgramsStartedUnderIt) {
   EXPECT_EQ(try_in_child(), 0);
 }
 
-TEST_F(Lock, EndsWithItsProcessThoughAChildOfThatLives) {
+TEST_F(Lock, EndsWithItsProcessThoughItsChildLives) {
   std::array<int, 2> held{};
   ASSERT_EQ(pipe(held.data()), 0);
   char c = 'x';

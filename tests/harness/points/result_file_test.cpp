@@ -127,7 +127,7 @@ TEST(ResultFile, OfAStabilitySweepFitsItsSchema) {
   EXPECT_EQ(misfit(document, "stability"), "");
 }
 
-TEST(ResultFile, SaysWhoIsWhoAndHowNoisyItIs) {
+TEST(ResultFile, NamesItsContestantsAndItsNoise) {
   Suite suite = tiny_suite();
   suite.same = "icd";
   std::vector<PointResult> points;
