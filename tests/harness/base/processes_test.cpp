@@ -12,8 +12,8 @@
 #include <thread>
 
 #include "harness/base/child_process.h"
-#include "harness/base/errors.h"
 #include "harness/base/timing_lock.h"
+#include "support/refusal.h"
 
 namespace harness {
 namespace {
@@ -98,14 +98,9 @@ int try_in_child(bool started_under_it = false) {
   const pid_t child = fork();
   if (child == 0) {  // as after exec: the variable is inherited, the lock is not
     if (!started_under_it) unsetenv("INEXTENSIBLE_TIMING_LOCK");
-    try {
-      const TimingLock lock(false);
-      _exit(0);
-    } catch (const UsageError& error) {
-      const bool named =
-          std::string(error.what()).find(std::to_string(getppid())) != std::string::npos;
-      _exit(named ? 1 : 2);
-    }
+    const std::string said = refusal_of([] { const TimingLock lock(false); });
+    const bool named = said.find(std::to_string(getppid())) != std::string::npos;
+    _exit(said.empty() ? 0 : named ? 1 : 2);
   }
   int status = 0;
   waitpid(child, &status, 0);
