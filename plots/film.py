@@ -13,7 +13,6 @@ import shutil
 import statistics
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 from typing import Any, Iterator
 
@@ -149,19 +148,13 @@ def moving(film: Film) -> Iterator[Image.Image]:
 def save_mp4(film: Film, out: Path) -> None:
     if not shutil.which("ffmpeg"):
         raise OSError("ffmpeg missing (Debian: apt-get install ffmpeg); .webp needs none")
-    command = ["ffmpeg", "-y", "-loglevel", "error", "-f", "image2pipe", "-c:v", "ppm", "-framerate", str(film.rate), "-i", "-",
-               "-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "20", str(out)]
-    with tempfile.TemporaryFile() as errors, subprocess.Popen(command, stdin=subprocess.PIPE, stderr=errors) as ffmpeg:
-        assert ffmpeg.stdin is not None
-        try:
-            for image in moving(film):  # cropped to even width and height, which the format requires
-                image.crop((0, 0, image.width // 2 * 2, image.height // 2 * 2)).save(ffmpeg.stdin, "PPM")
-            ffmpeg.stdin.close()
-        except BrokenPipeError:
-            pass
-        if ffmpeg.wait() != 0:
-            errors.seek(0)
-            raise OSError("ffmpeg failed: " + (errors.read().decode(errors="replace").strip().splitlines() or ["no message"])[-1][:200])
+    command = ["ffmpeg", "-nostdin", "-y", "-loglevel", "error", "-framerate", str(film.rate), "-i", "sheet-%d.ppm",
+               "-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "20", str(out.absolute())]
+    for number, image in enumerate(moving(film)):  # cropped to even width and height, which the format requires
+        image.crop((0, 0, image.width // 2 * 2, image.height // 2 * 2)).save(film.folder / f"sheet-{number}.ppm")
+    done = subprocess.run(command, cwd=film.folder, capture_output=True, text=True, errors="replace", check=False)
+    if done.returncode != 0:
+        raise OSError("ffmpeg failed: " + (done.stderr.strip().splitlines() or ["no message"])[-1][:200])
 
 
 def save(film: Film, out: Path) -> None:

@@ -42,13 +42,10 @@ inline void expect_copies(const std::string& solver) {
 // Vertices may be numbered in any order, masses and lengths may differ. Level links carry no load
 // across them: every vertex falls freely at first.
 inline void expect_unlike_links(const std::string& solver) {
-  ProblemParts parts;
-  parts.mass = {0.3, 1, 2};  // vertex 1 is the pin, then 2, then 0
-  parts.pinned = {1};
-  parts.edges = {{0, 2}, {1, 2}};
-  parts.rest_length = {0.5, 0.25};
   Positions x = Positions::Zero(3, 3);
-  x.row(0) << 1.75, 1, 1.25;
+  x.row(0) << 1.75, 1, 1.25;  // vertex 1 is the pin, then 2, then 0
+  ProblemParts parts = parts_at_rest(x, {{0, 2}, {1, 2}}, {0.3, 1, 2}, {1});
+  parts.gravity = {0, -9.81, 0};
   const Scene scene = finished(parts, x, Positions::Zero(3, 3));
   const double h = 1e-5;
   const auto after = run(solver, scene, h, 1);
@@ -91,8 +88,8 @@ inline void expect_chains_only(const std::string& solver) {
     }
   };
   expect_unsupported(spinning_net(3, 1), "0 vertices are pinned");
-  const State start = chain(3).start;
-  ProblemParts parts = chain_parts(3);
+  const auto [problem, start] = chain(3);
+  ProblemParts parts = inextensible::testing::parts_of(*problem);
   parts.edges.back() = {1, 3};
   expect_unsupported(finished(parts, start.x, start.v), "vertex 1 has more than two edges");
   parts.edges.pop_back();

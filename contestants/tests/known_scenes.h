@@ -22,6 +22,7 @@ using inextensible::Positions;
 using inextensible::ProblemParts;
 using inextensible::Settings;
 using inextensible::State;
+using inextensible::testing::parts_at_rest;
 
 struct Scene {
   std::shared_ptr<const inextensible::Problem> problem;
@@ -39,33 +40,23 @@ inline void load(const std::string& plugin) {
   inextensible::add_backends({entry()->backends, entry()->backend_count});
 }
 
-inline ProblemParts chain_parts(int links) {
-  ProblemParts parts;
-  parts.mass.assign(links + 1, 1.0 / links);
-  parts.pinned = {0};
-  for (int i = 0; i < links; ++i) parts.edges.push_back({i, i + 1});
-  parts.rest_length.assign(links, 1.0 / links);
-  return parts;
-}
-
 inline Scene finished(ProblemParts parts, Positions x, Positions v) {
   return {std::make_shared<const inextensible::Problem>(std::move(parts)),
           {std::move(x), std::move(v)}};
 }
 
-// `links` equal links of 1 m and 1 kg in all, straight, pinned at the origin, at rest. Along x,
-// turned about y by `turn`.
+// `links` equal links of 1 m and 1 kg in all, pinned at the origin, at rest, straight down.
+inline Scene hanging_chain(int links) {
+  const inextensible::testing::HangingRope rope(links, 1.0 / links, 1.0 / links);
+  return {rope.problem, rope.start};
+}
+
+// The same, along x, turned about y by `turn`.
 inline Scene chain(int links, double turn = 0) {
   Positions x(3, links + 1);
   for (int i = 0; i <= links; ++i)
     x.col(i) << std::cos(turn) * i / links, 0, -std::sin(turn) * i / links;
-  return finished(chain_parts(links), x, Positions::Zero(3, links + 1));
-}
-
-// The same, straight down.
-inline Scene hanging_chain(int links) {
-  const inextensible::testing::HangingRope rope(links, 1.0 / links, 1.0 / links);
-  return {rope.problem, rope.start};
+  return {hanging_chain(links).problem, {x, Positions::Zero(3, links + 1)}};
 }
 
 // The same, bent and moving in all directions, every link at its length.
@@ -80,25 +71,22 @@ inline Scene swirling_chain(int links) {
     x.col(i + 1) = x.col(i) + e / links;
     v.col(i + 1) = v.col(i) + rate.cross(e) / links;
   }
-  return finished(chain_parts(links), x, v);
+  return {hanging_chain(links).problem, {x, v}};
 }
 
 // n x n vertices of 1 kg and 1 m x 1 m in all, without weight, that spin about y by `omega`.
 inline Scene spinning_net(int n, double omega) {
-  ProblemParts parts;
-  parts.mass.assign(n * n, 1.0 / (n * n));
-  parts.gravity.setZero();
   const double length = 1.0 / (n - 1);
+  std::vector<inextensible::Edge> edges;
   Positions x(3, n * n), v(3, n * n);
   for (int i = 0; i < n * n; ++i) {
     const int row = i / n, column = i % n;
     x.col(i) << column * length - 0.5, 0, row * length - 0.5;
     v.col(i) = omega * Eigen::Vector3d::UnitY().cross(Eigen::Vector3d(x.col(i)));
-    if (column + 1 < n) parts.edges.push_back({i, i + 1});
-    if (row + 1 < n) parts.edges.push_back({i, i + n});
+    if (column + 1 < n) edges.push_back({i, i + 1});
+    if (row + 1 < n) edges.push_back({i, i + n});
   }
-  parts.rest_length.assign(parts.edges.size(), length);
-  return finished(parts, x, v);
+  return finished(parts_at_rest(x, edges, std::vector<double>(n * n, 1.0 / (n * n))), x, v);
 }
 
 // A stepper of the plug-in with this name.
@@ -191,12 +179,10 @@ inline void expect_free_flight(const std::string& solver) {
 
 // Two vertices on a spring swing with omega^2 = 2 k / m about their fixed middle.
 inline void expect_spring(const std::string& solver) {
-  ProblemParts parts;
-  parts.mass = {1, 1};
-  parts.gravity.setZero();
-  parts.shear = inextensible::Springs{{{0, 1}}, {1}, {50}};
   Positions x = Positions::Zero(3, 2);
   x.row(0) << -0.55, 0.55;
+  ProblemParts parts = parts_at_rest(x, {}, {1, 1});
+  parts.shear = inextensible::Springs{{{0, 1}}, {1}, {50}};
   const Scene scene = finished(parts, x, Positions::Zero(3, 2));
   const State after = run(solver, scene, std::numbers::pi / 10 / 3200, 3200);  // half a period
   EXPECT_NEAR(after.x(0, 1), 0.45, 1e-4);

@@ -14,6 +14,7 @@ from parts.words import percent, place_part, shorten, subject
 
 BUDGETS = (1, 4, 16)  # ms of a frame of 1/60 s, as in `bench budget`
 WIDTH, ROW, NAMES = 6.0, 0.24, 2.6
+MARK = {"marker": "o", "markersize": 6, "linestyle": "none", "markeredgecolor": "white", "markeredgewidth": 0.5}
 
 
 def figures_of(result: Result) -> Figures:
@@ -40,19 +41,14 @@ def draw(place: Json, result: Result) -> Figure:
     for number, reached in enumerate(rows.values()):
         axes.plot([ms for ms, _ in reached], [number] * len(reached), color=LIGHT_GREY, linewidth=3, zorder=2)
         for ms, limit in reached:
-            axes.add_line(_mark(shades[limit], [ms], [number], zorder=3))
-        axes.autoscale_view(scaley=False)
-    axes.legend(handles=[_mark(shades[limit], [], [], label=percent(limit)) for limit in limits], loc="lower left", frameon=False, fontsize=8,
-                bbox_to_anchor=(0, 1), borderaxespad=0, ncol=len(limits), handletextpad=0.1, columnspacing=1.2)
+            axes.plot(ms, number, color=shades[limit], zorder=3, **MARK)
+    axes.legend(handles=[Line2D([], [], color=shades[limit], label=percent(limit), **MARK) for limit in limits], loc="lower left",
+                frameon=False, fontsize=8, bbox_to_anchor=(0, 1), borderaxespad=0, ncol=len(limits), handletextpad=0.1, columnspacing=1.2)
     axes.set_yticks(range(len(rows)), [shorten(result.label(name), NAMES - 0.2, 8) for name in rows])
     set_ticks(axes.xaxis, LogLocator(), LogLocator(subs=range(2, 10)))
     axes.tick_params(axis="y", length=0)
     grid(axes)
     return sheet.figure
-
-
-def _mark(color: str, x: list[float], y: list[float], **more: object) -> Line2D:
-    return Line2D(x, y, marker="o", markersize=6, linestyle="none", color=color, markeredgecolor="white", markeredgewidth=0.5, **more)
 
 
 def _reached(row: Json) -> list[tuple[float, float]]:

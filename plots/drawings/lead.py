@@ -1,4 +1,4 @@
-"""Whose the lead is: at each strain limit, within the headline's error, how many times as long the leader's method takes in its
+"""What the lead is due to: at each strain limit, within the headline's error, how many times as long the leader's method takes in its
 published time stepper (the stepper's share), and how many times as long the next method takes in the leader's stepper (the method's
 share)."""
 

@@ -1,7 +1,7 @@
 """Curves of time, the steps beneath them, and the strip of failures above them."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from matplotlib.axes import Axes
 from matplotlib.text import Annotation
@@ -31,8 +31,8 @@ class Best:
 
 @dataclass(frozen=True)
 class Curve:
-    best: list[Best] = field(default_factory=list)
-    failures: list[tuple[float, str]] = field(default_factory=list)
+    best: list[Best]
+    failures: list[tuple[float, str]]
 
 
 Curves = dict[str, Curve]

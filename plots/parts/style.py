@@ -34,15 +34,18 @@ class Look:
 @dataclass(frozen=True)
 class SolverStyle:
     """Look of one solver. `contestant` is false for backends that the figures show but do not rank; `hollow` marks have no
-    face; those that do not lead are thin and pale, being neither first anywhere nor of the paper."""
+    face; `recedes` has the caption of those that are thin and pale, being neither first anywhere nor of the paper."""
 
     label: str
     color: str
     look: Look
     contestant: bool = True
     hollow: bool = False
-    leads: bool = True
-    origin: str = "elsewhere"
+    recedes: str = ""
+
+    @property
+    def leads(self) -> bool:
+        return not self.recedes
 
     @property
     def prominent(self) -> bool:
@@ -114,11 +117,11 @@ def styles_for(names: Iterable[str], result: Result, leaders: set[str] | None = 
             color, look = GREY, NEUTRAL_LOOKS[neutral.index(like) % len(NEUTRAL_LOOKS)]
         if like is not solver:
             look = replace(look, width=0.8)
-        made = SolverStyle(clean(solver.label), color, look, like.contestant, solver.unranked, origin=like.origin)
+        made = SolverStyle(clean(solver.label), color, look, like.contestant, solver.unranked)
         if leaders is None or solver.name in leaders or not made.contestant:
             return made
-        _, color, dashes = _receding(made)
-        return replace(made, color=color, look=replace(look, marker="", dashes=dashes, width=0.8), leads=False)
+        words, color, dashes = RECEDING.get(like.origin, RECEDING["elsewhere"])
+        return replace(made, color=color, look=replace(look, marker="", dashes=dashes, width=0.8), recedes=words)
 
     styles = {name: style(solver) for name, solver in solvers.items() if name in wanted}
     return dict(sorted(styles.items(), key=lambda entry: not entry[1].contestant))
@@ -138,12 +141,8 @@ def line_of(style: SolverStyle, x: list[float], y: list[float], **more: Any) -> 
 
 def receding_sentences(styles: Iterable[SolverStyle]) -> list[str]:
     """Which methods the pale lines are, a sentence for each kind."""
-    kinds = {words: [style.label for style in styles if not style.leads and _receding(style)[0] == words] for words, *_ in RECEDING.values()}
+    kinds = {words: [style.label for style in styles if style.recedes == words] for words, *_ in RECEDING.values()}
     return [f"{words}: {', '.join(labels)}." for words, labels in kinds.items() if labels]
-
-
-def _receding(style: SolverStyle) -> tuple[str, str, Dashes]:
-    return RECEDING.get(style.origin, RECEDING["elsewhere"])
 
 
 def _look_in(family: int, place: int) -> tuple[str, Look]:

@@ -155,11 +155,6 @@ def drawn(result: Json) -> dict[str, Figure]:
     return pictures
 
 
-def words_of(figure: Figure) -> str:
-    """Title, warnings and caption in one line."""
-    return " ".join(" ".join(text.get_text() for text in figure.texts).split())
-
-
 def axes_with(figure: Figure, xlabel: str = "", ylabel: str = "") -> Axes:
     (found,) = [axes for axes in figure.axes if xlabel in axes.get_xlabel() and ylabel in axes.get_ylabel()
                 and (axes.get_xlabel() or axes.get_ylabel())]

@@ -63,11 +63,7 @@ def test_a_run_that_gave_up_has_pictures_to_the_end_of_the_film(tmp_path: Path) 
     made = film.Film(pictured(tmp_path, [0, 1, 2], ends=1))
     assert not np.array_equal(pixels(film.panel(made, 1, 2)), pixels(film.panel(made, 1, 0)))
     assert "gave up" in film.caption(made, 1, 2)[1]
-
-
-def test_captions_tell_strain_so_far_time_and_sag(tmp_path: Path) -> None:
-    assert film.caption(film.Film(pictured(tmp_path, [0])), 0, 2)[2:] == [
-        "strain limit 1 %, largest so far 0.99 %", "6.67 ms for a frame of 1/30 s", "sag: lower edge 22.0 mm"]
+    assert film.caption(made, 0, 2)[2] == "strain limit 1 %, largest so far 0.99 %"
 
 
 @pytest.mark.parametrize("name, env, lost, message", [("x.mp4", {"PATH": "/nowhere"}, "", "film.py: ffmpeg missing"),

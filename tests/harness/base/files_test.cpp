@@ -25,7 +25,7 @@ class Files : public testing::Test {
   TemporaryFolder folder_{"files-test"};
 };
 
-TEST_F(Files, TheUsersOwnBesideTheOutputStay) {
+TEST_F(Files, FilesBesideTheOutputStay) {
   const std::string names[] = {at("a.json.partial"), at("a.json.XXXXXX"), at("a.json.tmp")};
   for (const std::string& name : names) std::ofstream(name) << "mine";
   check_writable(at("a.json"));
@@ -36,7 +36,7 @@ TEST_F(Files, TheUsersOwnBesideTheOutputStay) {
   for (const std::string& name : names) EXPECT_EQ(content(name), "mine") << name;
 }
 
-// Also to a file that is yet to be made; both names of one output are one lock.
+// A link to a file that does not exist yet does too; both names of an output share one lock.
 TEST_F(Files, ALinkStaysALink) {
   fs::create_directory(at("there"));
   std::ofstream(at("there/result.json")) << "old";
@@ -93,8 +93,7 @@ TEST_F(Files, PermissionsOfAFileThatIsReplacedAreKept) {
   EXPECT_EQ(fs::status(at("b.json")).permissions(), fs::perms(0644));
 }
 
-// Two writers of one file at a time: one of the two texts is there in the end, whole, and nothing
-// beside it.
+// Two writers of one file at a time leave one of the two texts, whole, and no other file.
 TEST_F(Files, TwoWritersDoNotMix) {
   check_writable(at("f"));
   const std::string a(1 << 16, 'a'), b(1 << 16, 'b');

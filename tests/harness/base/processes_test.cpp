@@ -12,8 +12,8 @@
 #include <thread>
 
 #include "harness/base/child_process.h"
-#include "harness/base/errors.h"
 #include "harness/base/timing_lock.h"
+#include "support/refusal.h"
 
 namespace harness {
 namespace {
@@ -37,8 +37,8 @@ TEST(ChildProcess, AnAnswerThatCannotBeReadIsHowItEnded) {
   }
 }
 
-TEST(ChildProcess, OneThatLeavesAChildBehindDoesNotHoldUpItsParentAndTakesItAlong) {
-  // This process takes orphans: where nobody does, one that was killed is there for ever.
+TEST(ChildProcess, ADescendantLeftBehindIsKilledAndDelaysNobody) {
+  // This process adopts orphans: otherwise a killed one may stay a zombie for ever.
   ASSERT_EQ(prctl(PR_SET_CHILD_SUBREAPER, 1), 0);
   const ChildOutcome outcome = run_in_child(
       [](Heartbeat& heartbeat) -> std::string {
@@ -61,8 +61,8 @@ TEST(ChildProcess, OneThatLeavesAChildBehindDoesNotHoldUpItsParentAndTakesItAlon
       << "its parent waited for the process that it left behind";
 }
 
-// Stopped for longer than the time-out and its grace (0.8 s), and running for less by all that a
-// busy machine may add.
+// The parent is stopped for longer than the time-out and its grace period (0.8 s), but runs for
+// much less, which leaves room for a busy machine.
 TEST(ChildProcess, TimeInWhichTheParentWasStoppedIsNotTheChilds) {
   std::array<int, 2> begun{}, finish{};
   ASSERT_EQ(pipe(begun.data()) + pipe(finish.data()), 0);
@@ -98,14 +98,9 @@ int try_in_child(bool started_under_it = false) {
   const pid_t child = fork();
   if (child == 0) {  // as after exec: the variable is inherited, the lock is not
     if (!started_under_it) unsetenv("INEXTENSIBLE_TIMING_LOCK");
-    try {
-      const TimingLock lock(false);
-      _exit(0);
-    } catch (const UsageError& error) {
-      const bool named =
-          std::string(error.what()).find(std::to_string(getppid())) != std::string::npos;
-      _exit(named ? 1 : 2);
-    }
+    const std::string said = refusal_of([] { const TimingLock lock(false); });
+    const bool named = said.find(std::to_string(getppid())) != std::string::npos;
+    _exit(said.empty() ? 0 : named ? 1 : 2);
   }
   int status = 0;
   waitpid(child, &status, 0);
@@ -122,7 +117,7 @@ TEST_F(Lock, IsHeldByOneProcessAndNotInTheWayOfProgramsStartedUnderIt) {
   EXPECT_EQ(try_in_child(), 0);
 }
 
-TEST_F(Lock, EndsWithItsProcessThoughAChildOfThatLives) {
+TEST_F(Lock, EndsWithItsProcessThoughItsChildLives) {
   std::array<int, 2> held{};
   ASSERT_EQ(pipe(held.data()), 0);
   char c = 'x';

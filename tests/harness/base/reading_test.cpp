@@ -1,5 +1,5 @@
-// What comes from outside: no text loses a document, and no expression takes for ever or makes a
-// long message.
+// Input from outside: no text makes a document unreadable, and no expression runs for ever or
+// causes a long message.
 #include <gtest/gtest.h>
 
 #include "harness/base/json.h"
@@ -9,7 +9,7 @@
 namespace harness {
 namespace {
 
-TEST(JsonText, ThatIsNotUtf8LosesNoDocument) {
+TEST(JsonText, InvalidUtf8LosesNoDocument) {
   const nlohmann::json value = {{"path",
                                  "a\xff"
                                  "b"}};
@@ -26,7 +26,7 @@ TEST(JsonText, SaysTheSameOnOneLineAndAsADocument) {
   EXPECT_EQ(line_of(value).find('\n'), std::string::npos);
 }
 
-TEST(Pattern, MatchesWholesAndFindsParts) {
+TEST(Pattern, MatchesWholeNamesAndFindsParts) {
   const Pattern pattern("--solver", "shake|icd");
   EXPECT_TRUE(pattern.matches("ICD"));
   EXPECT_FALSE(pattern.matches("icd_loose"));
@@ -34,7 +34,7 @@ TEST(Pattern, MatchesWholesAndFindsParts) {
 }
 
 // With backtracking the first would not end within anybody's time.
-TEST(Pattern, PathologicalOnesEndAndGiantsAreRefusedInALine) {
+TEST(Pattern, PathologicalOnesEndAndHugeOnesAreRefusedInALine) {
   const Pattern pattern("--filter", "(a*)*(a*)*(a*)*b|(a|aa)+$");
   EXPECT_FALSE(pattern.found_in(std::string(5000, 'a') + "c"));
   for (const std::string& bad : {std::string("[z-a]"), std::string(100000, '(')}) {

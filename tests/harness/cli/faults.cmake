@@ -25,20 +25,6 @@ function(with_fault file from to)
 endfunction()
 
 set(fault_sources)
-# Gauss-Seidel: three times as slow. What a call has taken is waited for twice more.
-with_fault(strain_limiting.cpp "#include <cmath>" "#include <chrono>\n#include <cmath>")
-with_fault(strain_limiting.cpp "namespace {\n" "namespace {
-struct Delay {
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point start = Clock::now();
-  ~Delay() {
-    const auto now = Clock::now();
-    while (Clock::now() < now + (now - start) * 2) {
-    }
-  }
-};
-")
-with_fault(strain_limiting.cpp "  for (int passes = 0;; ++passes) {" "  const Delay delay;\n  for (int passes = 0;; ++passes) {")
 # Fast projection: one iteration more than is needed.
 with_fault(fast_projection.cpp "  for (int j = 0, best_j = 0;; ++j) {" "  int extra = 0;\n  for (int j = 0, best_j = 0;; ++j) {")
 with_fault(fast_projection.cpp "j >= min_iterations_)" "j >= min_iterations_ && extra++ > 0)")

@@ -1,5 +1,5 @@
 # Sourced first by the tests of the finished program, each in a folder of its own.
-rm -rf -- ./*  # of the last time
+rm -rf -- ./*  # left by the last run
 set -u
 failures=0
 

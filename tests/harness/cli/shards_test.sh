@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The recipe of docs/using.md for many machines, run by GNU parallel on a sweep of three sizes: the shards are the whole sweep, and
 # finished shards are not run again.
-rm -rf -- ./*  # of the last time
+rm -rf -- ./*  # left by the last run
 set -euo pipefail
 command -v parallel >/dev/null || exit 77
 ln -s "$BENCH_BINARY" bench

@@ -1,4 +1,4 @@
-// Runs of films: what is said of them, and that they end; and a pixel of cloth.
+// Films: which runs are flagged, that every run ends, and a pixel of cloth.
 #include "harness/film/film.h"
 
 #include <gtest/gtest.h>

@@ -40,11 +40,15 @@ TunedEntry of_the_drape(const std::string& solver, const inextensible::Settings&
           {{"date", ""}, {"cpu_model", ""}, {"commit", ""}}};
 }
 
+std::string suite_text(const std::string& everywhere, const std::string& of_sweep,
+                       const std::string& scene = "chain") {
+  return "{" + everywhere + R"("sweeps": [{"sweep": "strain", "scene": ")" + scene + "\", " +
+         of_sweep + "}]}";
+}
+
 Suite suite_with(const std::string& everywhere, const std::string& of_sweep,
                  const std::string& scene = "chain") {
-  return parse_suite("{" + everywhere + R"("sweeps": [{"sweep": "strain", "scene": ")" + scene +
-                         R"(", "limits": [0.1], )" + of_sweep + "}]}",
-                     "suite");
+  return parse_suite(suite_text(everywhere, R"("limits": [0.1], )" + of_sweep, scene), "suite");
 }
 
 std::vector<std::string> names(const Suite& suite) {
@@ -101,13 +105,9 @@ TEST(Contestants, HaveTheirOwnNamesAndSettings) {
 
 // The message for a wrong suite names the key or value.
 TEST(Suite, NamesFileKeyAndValueOfWhatIsWrong) {
-  const auto sweep = [](const std::string& rest, const char* everywhere = "") {
-    return std::string("{") + everywhere + R"("sweeps": [{"sweep": "strain", )" +
-           (rest.find("\"scene\"") == std::string::npos ? R"("scene": "chain", )" : "") + rest +
-           "}]}";
-  };
+  const auto sweep = [](const char* rest) { return suite_text("", rest); };
   const auto solvers = [&](const char* list) {
-    return sweep(std::string(R"("limit": 0.1, "solvers": [)") + list + "]");
+    return suite_text("", std::string(R"("limit": 0.1, "solvers": [)") + list + "]");
   };
   EXPECT_NO_THROW(static_cast<void>(parse_suite(sweep(R"("limits": [0.1])"), "suite.json")));
   const std::pair<std::string, const char*> suites[] = {
@@ -118,7 +118,7 @@ TEST(Suite, NamesFileKeyAndValueOfWhatIsWrong) {
       {R"({"reps": 1e300, "sweeps": []})", "'reps' is 1"},
       {sweep(R"("limits": [0])"), "'limits' is 0"},
       {sweep(R"("limits": "all")"), "'limits' is \"all\""},
-      {sweep(R"("limit": 0.1, "scene": "drap")"), "did you mean 'drape'"},
+      {suite_text("", R"("limit": 0.1)", "drap"), "did you mean 'drape'"},
       {sweep(R"("limit": 0.1, "solver": ["icd"])"), "did you mean 'solvers'"},
       {sweep(R"("limit": 0.1, "scene_parameters": {"n": 1})"), "'n' is 1"},
       {sweep(R"("limit": 0.1, "scene_parameters": {"m": 1})"), "no parameter of scene chain 'm'"},
@@ -132,8 +132,9 @@ TEST(Suite, NamesFileKeyAndValueOfWhatIsWrong) {
       {solvers(R"({"name": "x", "solver": "idc"})"), "did you mean 'icd'"},
       {solvers(R"({"name": "x", "solver": "icd", "unranked": 1})"), "'unranked'"},
       {solvers("5"), "solvers' names"},
-      {sweep(R"("limit": 0.1, "solvers": ["icd"])", R"("same": "idc", )"), "did you mean 'icd'"},
-      {sweep(R"("limit": 0.1)", R"("tuned": "no_such.json", )"), "no_such.json"}};
+      {suite_text(R"("same": "idc", )", R"("limit": 0.1, "solvers": ["icd"])"),
+       "did you mean 'icd'"},
+      {suite_text(R"("tuned": "no_such.json", )", R"("limit": 0.1)"), "no_such.json"}};
   for (const auto& [text, part] : suites) {
     const std::string message =
         refusal_of([&suite = text] { static_cast<void>(parse_suite(suite, "suite.json")); });

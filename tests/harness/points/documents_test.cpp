@@ -14,26 +14,20 @@ using harness::testing::read_as_result;
 using harness::testing::read_as_suite;
 using nlohmann::json;
 
-// One to four corrupted places: bytes changed, cut out, doubled or inserted from a list of
-// nuisances.
+// One to four corrupted places: bytes changed, cut out or doubled, or a value that trips readers.
 std::string corrupt_text(std::string text, std::mt19937_64& random) {
-  const auto below = [&](std::size_t n) { return random() % n; };
   static const std::vector<std::string> nuisances{
-      "null",   "-1",  "1e999",   "0",      "\"\"",
-      "[]",     "{}",  "true",    "1e-320", "18446744073709551616",
-      "[[[[",   "}}}", "\\u0000", ",",      ":",
-      "\"\xff", "//",  "/*",      "NaN",    "2147483648"};
-  for (std::size_t i = 1 + below(4); i > 0 && !text.empty(); --i) {
-    const std::size_t at = below(text.size());
-    const std::size_t kind = below(5);
+      "1e999", "NaN", "[[[[", "\"\\u0000\"", "\"\xff\"", "/*", "18446744073709551616"};
+  for (std::size_t i = 1 + random() % 4; i > 0 && !text.empty(); --i) {
+    const std::size_t at = random() % text.size();
+    const auto kind = random() % 4;
     if (kind == 0) text[at] = static_cast<char>(random());
-    if (kind == 1) text.erase(at, 1 + below(20));
-    if (kind == 2) text.insert(at, text.substr(below(text.size()), 1 + below(40)));
-    if (kind == 3) text.insert(at, nuisances[below(nuisances.size())]);
-    if (kind < 4) continue;
+    if (kind == 1) text.erase(at, 1 + random() % 20);
+    if (kind == 2) text.insert(at, text.substr(random() % text.size(), 1 + random() % 40));
+    if (kind < 3) continue;
     const std::size_t colon = text.find(':', at), end = text.find_first_of(",}\n", colon);
-    if (end != std::string::npos)  // a whole value
-      text.replace(colon + 1, end - colon - 1, nuisances[below(nuisances.size())]);
+    if (end != std::string::npos)
+      text.replace(colon + 1, end - colon - 1, nuisances[random() % nuisances.size()]);
   }
   return text;
 }

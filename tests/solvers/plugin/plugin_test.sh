@@ -13,18 +13,7 @@ quietly cmake --install "$BUILD_FOLDER" --prefix "$PWD/installed"
 CMAKE_GENERATOR=Ninja quietly cmake -S "$EXAMPLE" -B example -DCMAKE_PREFIX_PATH="$PWD/installed"
 quietly cmake --build example
 bench=$PWD/installed/bin/bench plugin=example/libmy_solver.so
-
-# refused PART ARGUMENTS...: exit 2, one line on stderr that contains PART, nothing on stdout, no file made.
-refused() {
-  local part=$1 code lines
-  shift
-  rm -rf out.json
-  "$bench" "$@" >stdout.txt 2>stderr.txt </dev/null
-  code=$?
-  lines=$(wc -l <stderr.txt)
-  [[ $code == 2 && $lines == 1 && ! -s stdout.txt && ! -e out.json ]] && grep -qF -- "$part" stderr.txt ||
-    fail "$* -> exit $code, $lines lines: $(cat stderr.txt)"
-}
+BENCH_BINARY=$bench  # of `refused`
 
 example/rope >rope.txt || fail "the program of one's own: $(cat rope.txt)"
 
