@@ -49,20 +49,6 @@ TEST(ImplicitSprings, EndEveryStepAtTheMinimumWhateverTheyReuse) {
   }
 }
 
-TEST(ImplicitSprings, FactorLessOftenWhereAFactorizationIsKept) {
-  const auto work = [](double reuse) {
-    Random random(3);
-    const RandomMesh mesh = random_mesh(random, 1, 30, 1);
-    State state = moving_state(random, mesh, 10);
-    const auto stepper = springs(mesh, {{"reuse", reuse}});
-    for (int step = 0; step < 50; ++step) EXPECT_TRUE(stepper->advance(state, h));
-    return stepper->work();
-  };
-  const WorkCounters never = work(0);
-  EXPECT_EQ(never.factorizations, never.iterations);
-  EXPECT_LT(work(10).factorizations, never.factorizations);
-}
-
 // The step of Chen et al. 2024 for one vertex: x += H^-1 f.
 void move(int v, const Problem& problem, const Springs& springs, const Positions& y, Positions& x) {
   const double m = problem.mass()[v];
