@@ -24,6 +24,10 @@ inline Eigen::Vector3d random_vector(Random& random, double size) {
   return {uniform(random, -size, size), uniform(random, -size, size), uniform(random, -size, size)};
 }
 
+inline Eigen::MatrixXd random_matrix(Random& random, Eigen::Index rows, Eigen::Index columns) {
+  return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return uniform(random, -1, 1); });
+}
+
 // test(random, seed) for as many seeds, of which sanitizers see an eighth; a failure names its
 // seed.
 template <class Test>
@@ -93,7 +97,7 @@ inline RandomMesh random_mesh(Random& random, int rows, int columns, int pinned)
 // at rest; masses log-uniform in [lightest, 1]; the first `pinned` vertices pinned. Zero gravity.
 // With extra well below 2 n the gradients are independent (a generic framework in space).
 inline RandomMesh random_graph(Random& random, int n, int extra, int pinned, double lightest) {
-  const Positions x = Positions::NullaryExpr(3, n, [&] { return uniform(random, -1, 1); });
+  const Positions x = random_matrix(random, 3, n);
   std::vector<double> mass;
   for (int v = 0; v < n; ++v) mass.push_back(std::pow(lightest, uniform(random, 0, 1)));
   std::vector<int> pins(pinned);
@@ -134,8 +138,7 @@ inline RandomMesh random_chains(Random& random, int chains, double lightest = 1e
     }
   }
   std::shuffle(edges.begin(), edges.end(), random);
-  const Positions x =
-      Positions::NullaryExpr(3, std::ssize(mass), [&] { return uniform(random, -1, 1); });
+  const Positions x = random_matrix(random, 3, std::ssize(mass));
   return {std::make_shared<const Problem>(parts_at_rest(x, edges, mass, pins)), x};
 }
 

@@ -17,14 +17,11 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using testing::Random;
+using testing::random_matrix;
 using testing::uniform;
 using Triangle = SymmetricPattern::Triangle;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-MatrixXd random_matrix(Random& random, Eigen::Index rows, Eigen::Index columns) {
-  return MatrixXd::NullaryExpr(rows, columns, [&] { return uniform(random, -1, 1); });
-}
 
 MatrixXd schur_complement(const Problem& problem, const Positions& x) {
   const MatrixXd j = testing::dense_gradient(problem, x);

@@ -33,8 +33,7 @@ TEST(EdgeConstraints, GradientMatchesCentralDifferencesOfC) {
     VectorXd c(m), plus(m), minus(m), rate(m);
     edges.linearize(x, u, c);
     for (int trial = 0; trial < 36; ++trial) {
-      const Positions way =
-          Positions::NullaryExpr(3, x.cols(), [&] { return testing::uniform(random, -1, 1); });
+      const Positions way = testing::random_matrix(random, 3, x.cols());
       edges.linearize(x + way, ignored, plus);
       edges.linearize(x - way, ignored, minus);
       edges.rate(u, way, rate);
