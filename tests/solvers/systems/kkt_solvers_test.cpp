@@ -111,9 +111,7 @@ TEST_P(KktSolvers, SolveTheDenseSaddlePointSystemAndNoticeTheWrongInertia) {
       const auto dense = [&](const VectorXd& multipliers) {
         return dense_kkt(problem, mesh.x, multipliers, kkt->mean_mass());
       };
-      const VectorXd eigenvalues =
-          Eigen::SelfAdjointEigenSolver<MatrixXd>(dense(natural_mu), Eigen::EigenvaluesOnly)
-              .eigenvalues();
+      const VectorXd eigenvalues = dense(natural_mu).selfadjointView<Eigen::Lower>().eigenvalues();
       const bool proper = (eigenvalues.array() < 0).count() == m;
       ++seen[proper];
       const bool certain = eigenvalues.cwiseAbs().minCoeff() > 1e-6;
