@@ -186,15 +186,9 @@ TEST_P(BuiltInSolvers, Conform) {
   EXPECT_EQ(failed_checks(GetParam(), true), Checks{});
 }
 
-std::vector<const char*> built_in() {
-  std::vector<const char*> names;
-  for (const Backend& backend : backends()) {
-    if (is_built_in(backend.name)) names.push_back(backend.name);
-  }
-  return names;
-}
-
-INSTANTIATE_TEST_SUITE_P(All, BuiltInSolvers, ::testing::ValuesIn(built_in()),
+INSTANTIATE_TEST_SUITE_P(All, BuiltInSolvers, ::testing::ValuesIn(names::rows_that([](auto& row) {
+                           return is_built_in(row.name);
+                         })),
                          names::contestant_name);
 
 }  // namespace

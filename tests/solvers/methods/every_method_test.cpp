@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <numbers>
 
+#include "harness/scenes/scene.h"
 #include "harness/stability/trial.h"
 #include "solvers/problem/triangle_collider.h"
 #include "solvers/systems/constrained_acceleration.h"
@@ -16,7 +17,6 @@
 #include "support/motion.h"
 #include "support/param_name.h"
 #include "support/random_mesh.h"
-#include "support/scenes.h"
 
 namespace {
 std::atomic<long> allocations{0};
@@ -226,7 +226,7 @@ TEST_P(EveryMethod, GivesAnHonestStepOrACleanRefusalInRandomCases) {
 // takes.
 TEST_P(EveryMethod, IsTheOtherMethodOnAChainIfItSaysSo) {
   if (!*row.same_on_chains) GTEST_SKIP() << "does not say so";
-  const harness::Scene scene = harness::testing::build("chain", {{"n", 40}});
+  const harness::Scene scene = harness::built_scene("chain", {{"n", 40}});
   for (const double strain_limit : {0.05, 0.001}) {
     const auto one = make(scene.problem, strain_limit);
     const auto other = make_stepper(row.same_on_chains, scene.problem, {strain_limit});
@@ -335,8 +335,8 @@ TEST_P(EveryMethod, AllocatesNothingInsideAStepAfterWarmUp) {
   if (!row.contestant) GTEST_SKIP() << "does not promise it";
   // Forces along the start of a step want short ones.
   const double step = row.direction == Direction::start ? 0.0005 : 0.002;
-  for (const auto& scene : {harness::testing::build("chain", {{"n", 80}}),
-                            harness::testing::build("drape", {{"n", 15}})}) {
+  for (const auto& scene :
+       {harness::built_scene("chain", {{"n", 80}}), harness::built_scene("drape", {{"n", 15}})}) {
     if (part_not_taken(row, *scene.problem)) continue;
     const auto stepper = make(scene.problem, 0.01);
     State state = scene.start;

@@ -9,12 +9,12 @@
 #include "harness/judge/mechanics.h"
 #include "harness/judge/reference.h"
 #include "harness/scenes/pendulum.h"
+#include "harness/scenes/scene.h"
 #include "solvers/registry.h"
 #include "solvers/stepping/bdf2.h"
 #include "solvers/systems/constrained_acceleration.h"
 #include "support/motion.h"
 #include "support/param_name.h"
-#include "support/scenes.h"
 
 namespace harness {
 namespace {
@@ -30,7 +30,7 @@ using inextensible::Stepper;
 constexpr double stretch = 0.32;  // s, of smooth motion
 constexpr double tight = 1e-11;   // strain limit: slack must not matter
 
-Scene short_chain() { return testing::build("chain", {{"n", 8}}); }
+Scene short_chain() { return built_scene("chain", {{"n", 8}}); }
 
 Positions pendulum_at(double time) {
   Pendulum pendulum({std::vector<double>(7, 1.0 / 8), std::vector<double>(7, 1.0 / 7), 9.81},
@@ -109,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(Pairs, PairOrder,
 // energy to the third power of the angle a step; directions of the end of the step lose it to the
 // first.
 TEST(Energy, OfATurningNetIsKeptByDirectionsOfTheMiddle) {
-  const Scene scene = testing::build("spinning_net", {{"n", 7}});
+  const Scene scene = built_scene("spinning_net", {{"n", 7}});
   const double start = total_energy(*scene.problem, scene.start);
   const auto lost = [&](const char* solver, const Settings& settings, double h) {
     State state = scene.start;
@@ -167,8 +167,7 @@ TEST(Bdf2, KeepsItsOrderWhenTheStepChanges) {
 // A body that hits the ground must not bounce off it by a velocity that is extrapolated over the
 // impact.
 TEST(Bdf2, DoesNotBounceOffACollider) {
-  const Scene scene =
-      testing::build("drape", {{"n", 5}, {"side", 0.05}, {"gap", 0.05}, {"shear", 0}});
+  const Scene scene = built_scene("drape", {{"n", 5}, {"side", 0.05}, {"gap", 0.05}, {"shear", 0}});
   auto stepper = bdf2(scene.problem, 1e-4);
   State state = scene.start;
   double highest_after = -1;
