@@ -1,5 +1,5 @@
 // Friction of every kind of method against what statics and dynamics say of it: a rope on a slope,
-// a vertex on a ground that moves, and a rope round a post.
+// a vertex on a turntable, and a rope round a post.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -32,7 +32,7 @@ Settings stiff_enough(const char* solver) {
 class Friction : public ::testing::TestWithParam<const char*> {};
 
 // What is in contact, and the method that moves it.
-struct Run {
+struct Moving {
   void advance(int steps, double h = short_step) {
     for (int step = 0; step < steps; ++step) {
       const StepResult result = stepper->advance(state, h);
@@ -45,7 +45,7 @@ struct Run {
 };
 
 // Three links of a rope, down a slope, at rest.
-struct OnSlope : Run {
+struct OnSlope : Moving {
   OnSlope(const char* solver, double friction, double angle)
       : down(std::cos(angle), -std::sin(angle), 0) {
     state.x = down * Eigen::RowVector4d(0, 0.1, 0.2, 0.3);
@@ -91,55 +91,23 @@ TEST(FrictionInEveryStepper, StopsASlidingRopeWhereCoulombSays) {
   }
 }
 
-// ---- One vertex on a ground through the origin that moves ----
-
-constexpr double tick = 1.0 / 128;  // s, so that times are exact
-
-struct OnGround : Run {
-  OnGround(double friction, BodyMotion motion, const Vector3d& at) {
-    ProblemParts parts;
-    parts.mass = {0.3};
-    parts.collider = std::make_shared<const testing::Ground>(Vector3d(0, 1, 0), 0, friction);
-    parts.body_motion = std::move(motion);
-    state = {at, Positions::Zero(3, 1), 0};
-    stepper = make_stepper("fast_projection", std::make_shared<const Problem>(parts), {0.01, 1});
-  }
-};
-
-// Friction accelerates by mu g until the vertex goes with the belt.
-TEST(MovingGround, TakesALoadAlongAtTheRateOfFriction) {
-  constexpr double mu = 0.25, speed = 0.8;
-  const auto belt = [](double time) {
-    return Pose{Eigen::Matrix3d::Identity(), {time * speed, 0, 0}};
-  };
-  OnGround load(mu, belt, {0, 0, 0});
-  double v = 0, x = 0;
-  for (int step = 1; step <= 128; ++step) {
-    load.advance(1, tick);
-    v = std::min(speed, v + mu * gravity * tick);
-    x += tick * v;
-    ASSERT_NEAR(load.state.v(0, 0), v, 1e-12) << "step " << step;
-    ASSERT_NEAR(load.state.x(0, 0), x, 1e-12) << "step " << step;
-    ASSERT_NEAR(load.state.x(1, 0), 0, 1e-8) << "step " << step;
-  }
-  EXPECT_EQ(v, speed);
-}
-
-// The vertex is carried round where friction bears its centripetal acceleration, and flung off
-// where not.
-TEST(MovingGround, HoldsOnATurntableWhatFrictionCanHold) {
+// A vertex is carried round where friction bears its centripetal acceleration, and flung off where
+// not.
+TEST(Turntable, HoldsWhatFrictionCanHold) {
   constexpr double rate = 4, radius = 0.5, needed = rate * rate * radius / gravity;
   const auto turn = [](double time) {
     return Eigen::AngleAxisd(rate * time, Vector3d::UnitY()).toRotationMatrix();
   };
   const auto after = [&](double friction) {
-    OnGround load(friction,
-                  [=](double time) {
-                    return Pose{turn(time), Vector3d::Zero()};
-                  },
-                  {radius, 0, 0});
-    load.state.v.col(0) = Vector3d(0, 0, -rate * radius);  // with the table
-    load.advance(64, tick);
+    ProblemParts parts;
+    parts.mass = {0.3};
+    parts.collider = std::make_shared<const testing::Ground>(Vector3d(0, 1, 0), 0, friction);
+    parts.body_motion = [=](double time) { return Pose{turn(time), Vector3d::Zero()}; };
+    Moving load;
+    load.stepper =
+        make_stepper("fast_projection", std::make_shared<const Problem>(parts), {0.01, 1});
+    load.state = {Vector3d(radius, 0, 0), Vector3d(0, 0, -rate * radius), 0};  // with the table
+    load.advance(64, 1.0 / 128);
     return load.state;
   };
   const State held = after(1.1 * needed), flung = after(0.5 * needed);
@@ -166,7 +134,7 @@ TriangleMesh post(int sides, double radius) {
 }
 
 // A rope over half of a post: a vertex on the middle of each upper facet, a load on either end.
-struct OnPost : Run {
+struct OnPost : Moving {
   static constexpr int vertices = 32;
   static constexpr double radius = 0.1, mass = 0.01, light = 0.5, friction = 0.3;
   static constexpr double turn = pi / vertices;  // of the rope, at each vertex
