@@ -156,7 +156,7 @@ TEST(SchurComplement, EqualsTheDenseProductInEachTriangleWithAndWithoutContacts)
 }
 
 // SHAKE's matrix, directions at two positions; a tree that is a path has a tridiagonal one.
-TEST(LuSolver, IsBackwardStableOnShakesMatricesAndSeesAnEmptyColumn) {
+TEST(LuSolver, IsBackwardStableOnShakesMatrices) {
   for (const bool chain : {true, false}) {
     testing::for_seeds(seeds, [&](testing::Random& random, std::uint64_t seed) {
       SCOPED_TRACE((chain ? "chain, seed " : "graph, seed ") + std::to_string(seed));
@@ -179,9 +179,6 @@ TEST(LuSolver, IsBackwardStableOnShakesMatricesAndSeesAnEmptyColumn) {
       VectorXd x = b;
       solver->solve(x.data());
       EXPECT_LT((matrix * x - b).norm(), 1e-12 * (matrix.norm() * x.norm() + b.norm()));
-      for (int i = schur.pattern().column_start[3]; i < schur.pattern().column_start[4]; ++i)
-        solver->values()[i] = 0;
-      EXPECT_FALSE(solver->factor());
     });
   }
 }
