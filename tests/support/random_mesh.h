@@ -165,9 +165,8 @@ inline Eigen::MatrixXd dense_gradient(const Problem& problem, const Positions& x
 }
 
 inline Eigen::VectorXd inverse_masses3(const Problem& problem) {
-  Eigen::VectorXd w(3 * problem.vertices());
-  for (Eigen::Index i = 0; i < w.size(); ++i) w[i] = problem.inverse_mass()[i / 3];
-  return w;
+  const auto w = Eigen::RowVectorXd::Map(problem.inverse_mass().data(), problem.vertices());
+  return w.replicate(3, 1).reshaped();
 }
 
 }  // namespace inextensible::testing

@@ -11,7 +11,6 @@
 #include "harness/scenes/pendulum.h"
 #include "harness/scenes/scene.h"
 #include "solvers/registry.h"
-#include "solvers/stepping/bdf2.h"
 #include "solvers/systems/constrained_acceleration.h"
 #include "support/motion.h"
 #include "support/param_name.h"
@@ -19,9 +18,7 @@
 namespace harness {
 namespace {
 
-using inextensible::Bdf2Stepper;
 using inextensible::make_stepper;
-using inextensible::make_velocity_filter;
 using inextensible::Positions;
 using inextensible::Settings;
 using inextensible::State;
@@ -126,23 +123,19 @@ TEST(Energy, OfATurningNetIsKeptByDirectionsOfTheMiddle) {
   EXPECT_GT(log_log_slope(steps, errors).value, 1.8);
 }
 
-Bdf2Stepper bdf2(const std::shared_ptr<const inextensible::Problem>& problem,
-                 double strain_limit = 1e-12) {
-  return {problem, make_velocity_filter("fast_projection", *problem, {strain_limit})};
-}
-
 TEST(Bdf2, RestartsFromAStateThatIsNotItsOwnAndInAStepGrownMoreThanTwofold) {
   const auto problem = inextensible::testing::one_edge(1, 2);
   for (const auto& [slowed, h, restarts] :
        {std::tuple(0.5, 0.01, true), std::tuple(1.0, 0.03, true), std::tuple(1.0, 0.02, false)}) {
-    auto used = bdf2(problem), fresh = bdf2(problem);
+    const auto used = make_stepper("fast_projection@bdf2", problem, {1e-12}),
+               fresh = make_stepper("fast_projection@bdf2", problem, {1e-12});
     State state = inextensible::testing::stretched_edge(1);
     state.v(1, 1) = 4;  // spins
-    for (int i = 0; i < 3; ++i) ASSERT_TRUE(used.advance(state, 0.01));
+    for (int i = 0; i < 3; ++i) ASSERT_TRUE(used->advance(state, 0.01));
     state.v *= slowed;
     State other = state;
-    ASSERT_TRUE(used.advance(state, h));
-    ASSERT_TRUE(fresh.advance(other, h));
+    ASSERT_TRUE(used->advance(state, h));
+    ASSERT_TRUE(fresh->advance(other, h));
     EXPECT_EQ(state.x == other.x && state.v == other.v, restarts);
   }
 }
@@ -153,10 +146,10 @@ TEST(Bdf2, KeepsItsOrderWhenTheStepChanges) {
   const Positions exact = pendulum_at(stretch);
   std::vector<double> steps, errors;
   for (double h = stretch / 100; steps.size() < 4; h /= 2) {
-    auto stepper = bdf2(scene.problem);
+    const auto stepper = make_stepper("fast_projection@bdf2", scene.problem, {1e-12});
     State state = scene.start;
     for (int i = 0; state.time < stretch - 1e-9; ++i)
-      ASSERT_TRUE(stepper.advance(state, i % 2 == 0 ? h : 1.5 * h));
+      ASSERT_TRUE(stepper->advance(state, i % 2 == 0 ? h : 1.5 * h));
     ASSERT_NEAR(state.time, stretch, 1e-9);
     steps.push_back(h);
     errors.push_back(rms_distance(scene, state.x, exact));
@@ -168,15 +161,15 @@ TEST(Bdf2, KeepsItsOrderWhenTheStepChanges) {
 // impact.
 TEST(Bdf2, DoesNotBounceOffACollider) {
   const Scene scene = built_scene("drape", {{"n", 5}, {"side", 0.05}, {"gap", 0.05}, {"shear", 0}});
-  auto stepper = bdf2(scene.problem, 1e-4);
+  const auto stepper = make_stepper("fast_projection@bdf2", scene.problem, {1e-4});
   State state = scene.start;
   double highest_after = -1;
   for (int i = 0; i < 100; ++i) {
-    ASSERT_TRUE(stepper.advance(state, 0.002));
+    ASSERT_TRUE(stepper->advance(state, 0.002));
     const double rise = state.v.row(1).maxCoeff();
-    if (stepper.work().contacts > 0) highest_after = std::max(highest_after, rise);
+    if (stepper->work().contacts > 0) highest_after = std::max(highest_after, rise);
   }
-  EXPECT_GT(stepper.work().contacts, 0);
+  EXPECT_GT(stepper->work().contacts, 0);
   EXPECT_LT(highest_after, 0.1);  // it arrives at 1 m/s
 }
 

@@ -91,13 +91,11 @@ TEST(EdgeConstraints, WorstNamesTheProblemsEdgeInAnyOrder) {
 // place. Some vertices are held by planes, and move within these: W (I - n n^T).
 TEST(SchurComplement, EqualsTheDenseProductInEachTriangleWithAndWithoutContacts) {
   testing::for_seeds(seeds, [&](testing::Random& random, std::uint64_t) {
-    const auto ground =
-        std::make_shared<const testing::Ground>(Eigen::Vector3d(0.3, 1, 0.2), 1, 0.4);
     const auto mesh = random_mesh(random, 4, 5, 3);
     ProblemParts parts = testing::parts_of(*mesh.problem);
     parts.edges.push_back({parts.edges[2].b, parts.edges[2].a});
     parts.rest_length.push_back(0.7);
-    parts.collider = ground;
+    parts.collider = std::make_shared<const testing::Ground>(Eigen::Vector3d(0.3, 1, 0.2), 1, 0.4);
     const Problem problem(parts);
     const Positions y = testing::perturbed(random, mesh, 0.3);
     Positions x = testing::perturbed(random, mesh, 0.3);
