@@ -28,7 +28,7 @@ inline Eigen::MatrixXd random_matrix(Random& random, Eigen::Index rows, Eigen::I
   return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return uniform(random, -1, 1); });
 }
 
-// test(random, seed) for as many seeds, of which sanitizers see an eighth; a failure names its
+// Runs test(random, seed) for `count` seeds, an eighth of them with sanitizers; a failure names its
 // seed.
 template <class Test>
 void for_seeds(std::uint64_t count, const Test& test) {
@@ -44,7 +44,7 @@ struct RandomMesh {
   Positions x;  // at rest: every edge has its rest length
 };
 
-// What a problem is made of but for forces of its own, for one that differs in some of it.
+// The parts of a problem without shear, bending, drag and obstacle, to make another from.
 inline ProblemParts parts_of(const Problem& problem) {
   ProblemParts parts;
   parts.mass = problem.mass();
@@ -146,8 +146,7 @@ inline RandomMesh random_chains(Random& random, int chains, double lightest = 1e
 inline Positions perturbed(Random& random, const RandomMesh& mesh, double size) {
   Positions x = mesh.x;
   for (Eigen::Index v = 0; v < x.cols(); ++v) {
-    if (mesh.problem->inverse_mass()[v] == 0) continue;
-    for (int i = 0; i < 3; ++i) x(i, v) += uniform(random, -size, size);
+    if (mesh.problem->inverse_mass()[v] > 0) x.col(v) += random_vector(random, size);
   }
   return x;
 }

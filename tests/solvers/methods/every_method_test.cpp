@@ -222,8 +222,7 @@ TEST_P(EveryMethod, GivesAnHonestStepOrACleanRefusalInRandomCases) {
   EXPECT_GT(steps, cases / 2) << "hardly any step was taken: this tests nothing";
 }
 
-// A method that says that it is another one on a chain is it bit for bit, for as long as a swing
-// takes.
+// A method whose row says that it is another one on a chain takes the same steps, bit for bit.
 TEST_P(EveryMethod, IsTheOtherMethodOnAChainIfItSaysSo) {
   if (!*row.same_on_chains) GTEST_SKIP() << "does not say so";
   const harness::Scene scene = harness::built_scene("chain", {{"n", 40}});

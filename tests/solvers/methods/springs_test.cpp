@@ -124,7 +124,7 @@ TEST(VertexBlockDescent, StartsWhereTheLastStepSaysThatItWillEnd) {
 constexpr int rope_links = 10;
 constexpr double link_length = 0.1, vertex_mass = 0.1;
 
-// What each link is longer than at rest after some time of hanging.
+// By how much each link is longer than at rest after 20 s of hanging.
 std::vector<double> elongations(const char* solver, double step, const Settings& settings) {
   const testing::HangingRope rope(rope_links, link_length, vertex_mass);
   const auto stepper = make_stepper(solver, rope.problem, {0.01, 1, settings});
