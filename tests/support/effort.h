@@ -1,5 +1,4 @@
-// How much tests do with sanitizers, which look at memory and not at mathematics, and make each
-// many times as slow.
+// Sanitizers examine memory, not mathematics, and make tests many times slower: fewer trials do.
 #pragma once
 
 namespace inextensible::testing {
@@ -10,7 +9,7 @@ inline constexpr bool sanitized = true;
 inline constexpr bool sanitized = false;
 #endif
 
-// How many random trials, or steps, of `n` are made.
+// How many of n random trials, or steps, are made.
 template <class Int>
 constexpr Int trials(Int n) {
   return sanitized ? (n + 7) / 8 : n;

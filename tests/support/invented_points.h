@@ -44,10 +44,15 @@ inline json point(const std::string& scene, const std::string& sweep, const std:
           {"max_strain", limit}};
 }
 
-// noise: q95 of the A/A pair; 0: there is none.
+// Of points of which a test gives a part. noise: q95 of the A/A pair; 0: there is none.
 inline json document(const std::vector<json>& points, double noise = 0) {
   json result{{"points", json::array()}};
-  for (const json& point : points) result["points"].push_back(invented::completed(point));
+  PointResult whole;
+  whole.spec.scene_parameters = {{"duration", 1}};
+  for (const json& part : points) {
+    result["points"].push_back(to_json(whole));
+    result["points"].back().merge_patch(part);
+  }
   if (noise > 0)
     result["context"]["noise"] = {{"pair", {"fast_projection", "fast_projection_again"}},
                                   {"places", 20},

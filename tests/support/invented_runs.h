@@ -34,15 +34,6 @@ inline json run(const std::string& contestant, double limit, double step, double
   return to_json(point);
 }
 
-// A point of which a test says a part.
-inline json completed(const json& part) {
-  PointResult point;
-  point.spec.scene_parameters = {{"duration", 1}};
-  json whole = to_json(point);
-  whole.merge_patch(part);
-  return whole;
-}
-
 inline json document(const std::vector<json>& points) {
   return {{"schema", "inextensible-bench/1"},
           {"context", {{"suite", {{"finest_error", 0.01}}}}},

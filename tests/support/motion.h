@@ -13,7 +13,7 @@ inline State stretched_edge(double length) {
   state.x(0, 1) = length;
   return state;
 }
-// Its problem; its length is 1.
+// The problem of such an edge, whose rest length is 1 m.
 inline std::shared_ptr<const Problem> one_edge(double mass_a, double mass_b,
                                                std::vector<int> pinned = {}) {
   return std::make_shared<const Problem>(

@@ -24,7 +24,11 @@ inline Eigen::Vector3d random_vector(Random& random, double size) {
   return {uniform(random, -size, size), uniform(random, -size, size), uniform(random, -size, size)};
 }
 
-// test(random, seed) for as many seeds, of which sanitizers see an eighth; a failure names its
+inline Eigen::MatrixXd random_matrix(Random& random, Eigen::Index rows, Eigen::Index columns) {
+  return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return uniform(random, -1, 1); });
+}
+
+// Runs test(random, seed) for `count` seeds, an eighth of them with sanitizers; a failure names its
 // seed.
 template <class Test>
 void for_seeds(std::uint64_t count, const Test& test) {
@@ -40,7 +44,7 @@ struct RandomMesh {
   Positions x;  // at rest: every edge has its rest length
 };
 
-// What a problem is made of but for forces of its own, for one that differs in some of it.
+// The parts of a problem without shear, bending, drag and obstacle, to make another from.
 inline ProblemParts parts_of(const Problem& problem) {
   ProblemParts parts;
   parts.mass = problem.mass();
@@ -93,7 +97,7 @@ inline RandomMesh random_mesh(Random& random, int rows, int columns, int pinned)
 // at rest; masses log-uniform in [lightest, 1]; the first `pinned` vertices pinned. Zero gravity.
 // With extra well below 2 n the gradients are independent (a generic framework in space).
 inline RandomMesh random_graph(Random& random, int n, int extra, int pinned, double lightest) {
-  const Positions x = Positions::NullaryExpr(3, n, [&] { return uniform(random, -1, 1); });
+  const Positions x = random_matrix(random, 3, n);
   std::vector<double> mass;
   for (int v = 0; v < n; ++v) mass.push_back(std::pow(lightest, uniform(random, 0, 1)));
   std::vector<int> pins(pinned);
@@ -134,8 +138,7 @@ inline RandomMesh random_chains(Random& random, int chains, double lightest = 1e
     }
   }
   std::shuffle(edges.begin(), edges.end(), random);
-  const Positions x =
-      Positions::NullaryExpr(3, std::ssize(mass), [&] { return uniform(random, -1, 1); });
+  const Positions x = random_matrix(random, 3, std::ssize(mass));
   return {std::make_shared<const Problem>(parts_at_rest(x, edges, mass, pins)), x};
 }
 
@@ -143,8 +146,7 @@ inline RandomMesh random_chains(Random& random, int chains, double lightest = 1e
 inline Positions perturbed(Random& random, const RandomMesh& mesh, double size) {
   Positions x = mesh.x;
   for (Eigen::Index v = 0; v < x.cols(); ++v) {
-    if (mesh.problem->inverse_mass()[v] == 0) continue;
-    for (int i = 0; i < 3; ++i) x(i, v) += uniform(random, -size, size);
+    if (mesh.problem->inverse_mass()[v] > 0) x.col(v) += random_vector(random, size);
   }
   return x;
 }
@@ -162,9 +164,8 @@ inline Eigen::MatrixXd dense_gradient(const Problem& problem, const Positions& x
 }
 
 inline Eigen::VectorXd inverse_masses3(const Problem& problem) {
-  Eigen::VectorXd w(3 * problem.vertices());
-  for (Eigen::Index i = 0; i < w.size(); ++i) w[i] = problem.inverse_mass()[i / 3];
-  return w;
+  const auto w = Eigen::RowVectorXd::Map(problem.inverse_mass().data(), problem.vertices());
+  return w.replicate(3, 1).reshaped();
 }
 
 }  // namespace inextensible::testing

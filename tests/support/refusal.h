@@ -1,4 +1,4 @@
-// What a reader says of what it refuses.
+// What a reader says when it refuses its input.
 #pragma once
 
 #include <string>

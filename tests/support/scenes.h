@@ -9,8 +9,4 @@ inline SceneParameters parameters(const std::string& name, const SceneParameters
   return complete_parameters(*find_scene(name), given);
 }
 
-inline Scene build(const std::string& name, const SceneParameters& given = {}) {
-  return find_scene(name)->build(parameters(name, given));
-}
-
 }  // namespace harness::testing

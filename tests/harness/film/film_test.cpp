@@ -45,7 +45,7 @@ TEST(Films, EndRunsWhoseStepsTakeTooMuchWork) {
 TEST(Pictures, ShowFlatCloth) {
   constexpr int width = 96;
   Recording recording;
-  recording.scene = testing::build("drape", {{"n", 12}});
+  recording.scene = built_scene("drape", {{"n", 12}});
   FilmRun take;
   take.strain_limit = 0.01;
   take.frames = {recording.scene.start.x};

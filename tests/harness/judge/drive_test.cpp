@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "support/scenes.h"
+#include "harness/scenes/scene.h"
 
 namespace harness {
 namespace {
@@ -14,7 +14,6 @@ using inextensible::Backend;
 using inextensible::Positions;
 using inextensible::State;
 using inextensible::StepResult;
-using testing::build;
 using End = DriveState::End;
 
 constexpr double whole_step = 0.01;
@@ -36,7 +35,7 @@ class Picky : public inextensible::Stepper {
 };
 
 struct Driving {
-  Scene scene = build("chain", {{"n", 3}});
+  Scene scene = built_scene("chain", {{"n", 3}});
   State state = scene.start;
 };
 
@@ -107,7 +106,7 @@ TEST(Drive, StopsWhereItIsToldTo) {
 
 // The chain begins to fall freely: half a step back it rises at g h / 2.
 TEST(Drive, StartsHalfAStepBackWhereVelocitiesAndSceneAskForIt) {
-  Scene chain = build("chain", {{"n", 3}});
+  Scene chain = built_scene("chain", {{"n", 3}});
   Backend backend = *inextensible::find_backend("null");
   backend.velocities = inextensible::Velocities::half_step;
   EXPECT_NEAR(start_of(chain, backend, whole_step).v(1, 2), 0.5 * 9.81 * whole_step, 1e-12);

@@ -15,7 +15,7 @@ namespace {
 
 using inextensible::State;
 
-const Scene chain_of_four = testing::build("chain", {{"n", 4}});
+const Scene chain_of_four = built_scene("chain", {{"n", 4}});
 
 // Falls by t metres; gaps of 0.001, and of 0.1 from sample 3 on.
 std::shared_ptr<Reference> falling() {
@@ -130,7 +130,7 @@ TEST(Strain, OfEdgesThatAreTooLongAndTooShort) {
 }
 
 TEST(Judge, MeasuresStrainBeforeAndAfterTheObstacle) {
-  const Scene drape = testing::build("drape", {{"n", 3}});
+  const Scene drape = built_scene("drape", {{"n", 3}});
   Judge judge(drape, {});
   State state = drape.start;
   judge.before(state, 0.01);

@@ -26,8 +26,8 @@ double error_of(const std::string& name, const SceneParameters& given,
                 const std::function<void(inextensible::ProblemParts&)>& change = {}) {
   SceneParameters own = given;
   for (const auto& [parameter, value] : changed) own[parameter] = value;
-  const Scene scene = testing::build(name, given);
-  auto problem = testing::build(name, own).problem;
+  const Scene scene = built_scene(name, given);
+  auto problem = built_scene(name, own).problem;
   if (change) {
     inextensible::ProblemParts parts = inextensible::testing::parts_of(*problem);
     change(parts);
@@ -96,7 +96,7 @@ TEST(Reference, OfTheSettlingDrapeIsSureToItsEnd) {
 }
 
 TEST(Shape, OfAFlatSquareIsItsHeightAndItsArea) {
-  const Scene scene = testing::build("drape", {{"n", 9}, {"subdivisions", 0}});
+  const Scene scene = built_scene("drape", {{"n", 9}, {"subdivisions", 0}});
   const Shape shape = shape_of(scene, scene.start.x);
   EXPECT_NEAR(shape.at("corner_height"), 0.251, 1e-12);
   EXPECT_NEAR(shape.at("potential_energy"), 0.251, 1e-12);
@@ -107,7 +107,7 @@ TEST(Shape, OfAFlatSquareIsItsHeightAndItsArea) {
 }
 
 TEST(Shape, CountsTheFoldsOfAHem) {
-  const Scene scene = testing::build("settling_drape", {{"n", 21}, {"off_axis", 0}});
+  const Scene scene = built_scene("settling_drape", {{"n", 21}, {"off_axis", 0}});
   const auto wavy = [&](int folds, double height) {
     inextensible::Positions x = scene.start.x;
     for (Eigen::Index v = 0; v < x.cols(); ++v)

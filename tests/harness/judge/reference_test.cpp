@@ -85,7 +85,7 @@ TEST(Pendulum, OfEightyVerticesKeepsItsEnergyAndMeetsTheKnownPlaces) {
   const auto stored = ReferenceFolder(std::vector{source_path("results/references")})
                           .find("chain", parameters("chain"));
   ASSERT_TRUE(stored);
-  const Scene scene = testing::build("chain");
+  const Scene scene = built_scene("chain", {});
   for (std::size_t i = 0; i < stored->times.size() && stored->times[i] < 0.5; ++i) {
     pendulum.advance(stored->times[i], 1e-13);
     EXPECT_LT(max_distance(scene, pendulum.positions(), stored->positions[i]), 1e-9);

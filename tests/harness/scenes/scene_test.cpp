@@ -11,14 +11,12 @@
 #include "solvers/problem/edge_constraints.h"
 #include "solvers/problem/triangle_collider.h"
 #include "solvers/systems/schur_complement.h"
-#include "support/scenes.h"
 
 namespace harness {
 namespace {
 
 using inextensible::Positions;
 using inextensible::TriangleCollider;
-using testing::build;
 
 double mirror_defect(const Scene::Mirror& mirror, const Positions& x) {
   const Positions reflected = x - 2 * mirror.normal * (mirror.normal.transpose() * x);
@@ -56,7 +54,7 @@ TEST(EveryScene, StartsAsItPromises) {
 }
 
 TEST(Drape, HasThePapersSizes) {
-  const Scene drape = build("drape");
+  const Scene drape = built_scene("drape", {});
   EXPECT_EQ(drape.problem->vertices(), 5041);
   EXPECT_EQ(drape.problem->constraints(), 9940);
   EXPECT_EQ(drape.problem->shear()->edges.size(), 9800u);
@@ -69,7 +67,7 @@ TEST(Drape, HasThePapersSizes) {
 
 // Rows lie below their pins; marks are the middles of the first and the last row.
 TEST(HungPatch, IsThePatchTurnedAboutItsPins) {
-  const Scene hung = build("hung_patch", {{"n", 9}, {"tilt", 0.3}, {"side", 2}});
+  const Scene hung = built_scene("hung_patch", {{"n", 9}, {"tilt", 0.3}, {"side", 2}});
   ASSERT_EQ(hung.marks.size(), 2u);
   EXPECT_EQ(hung.start.x.col(hung.marks[0].vertex), Eigen::Vector3d::Zero());
   EXPECT_NEAR(hung.start.x(1, hung.marks[1].vertex), -2 * std::cos(0.3), 1e-15);

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "harness/scenes/scene.h"
 #include "solvers/registry.h"
-#include "support/scenes.h"
 
 namespace harness {
 namespace {
@@ -28,7 +28,7 @@ double angle_between(const Positions& x, const Positions& y) {
 
 // The angle of each step up to one second, from velocities of the start itself.
 std::vector<double> step_angles(const char* solver, double h) {
-  const Scene scene = testing::build("spinning_net", {{"n", 6}});
+  const Scene scene = built_scene("spinning_net", {{"n", 6}});
   const auto stepper = inextensible::make_stepper(solver, scene.problem, {1e-11});
   State state = scene.start;
   std::vector<double> angles;

@@ -7,15 +7,14 @@
 
 #include "harness/judge/drive.h"
 #include "harness/judge/mechanics.h"
+#include "harness/scenes/scene.h"
 #include "solvers/registry.h"
-#include "support/scenes.h"
 
 namespace harness {
 namespace {
 
 using inextensible::Pose;
 using inextensible::State;
-using testing::build;
 
 constexpr int around = 24;
 
@@ -56,17 +55,17 @@ TEST(Garment, SlipsPastHipsThatItsRimMayPass) {
 }
 
 TEST(Garment, ItsBodyStartsAtRestWhereItIs) {
-  const Scene scene = build("garment", {{"n", around}});
+  const Scene scene = built_scene("garment", {{"n", around}});
   const auto& motion = scene.problem->body_motion();
   const Pose start = motion(0), soon = motion(1e-4);
   EXPECT_EQ(start.turn, Eigen::Matrix3d::Identity());
   EXPECT_EQ(start.translation, Eigen::Vector3d::Zero().eval());
   EXPECT_LT((soon.turn - start.turn).norm() + (soon.translation - start.translation).norm(), 1e-9);
-  EXPECT_FALSE(build("garment", {{"sway", 0}, {"turn", 0}}).problem->body_motion());
+  EXPECT_FALSE(built_scene("garment", {{"sway", 0}, {"turn", 0}}).problem->body_motion());
 }
 
 TEST(Cape, HangsFromTheMovingBody) {
-  const Scene scene = build("cape", {{"n", 15}});
+  const Scene scene = built_scene("cape", {{"n", 15}});
   const inextensible::Problem& problem = *scene.problem;
   ASSERT_GT(problem.pinned().size(), 2U);
   ASSERT_LT(problem.pinned().size(), 15U) << "a part of the collar";

@@ -1,5 +1,5 @@
 // Friction of every kind of method against what statics and dynamics say of it: a rope on a slope,
-// a vertex on a ground that moves, and a rope round a post.
+// a vertex on a turntable, and a rope round a post.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -31,8 +31,21 @@ Settings stiff_enough(const char* solver) {
 
 class Friction : public ::testing::TestWithParam<const char*> {};
 
+// What is in contact, and the method that moves it.
+struct Moving {
+  void advance(int steps, double h = short_step) {
+    for (int step = 0; step < steps; ++step) {
+      const StepResult result = stepper->advance(state, h);
+      ASSERT_TRUE(result) << result.detail << " at t = " << state.time;
+    }
+  }
+
+  State state;
+  std::unique_ptr<Stepper> stepper;
+};
+
 // Three links of a rope, down a slope, at rest.
-struct OnSlope {
+struct OnSlope : Moving {
   OnSlope(const char* solver, double friction, double angle)
       : down(std::cos(angle), -std::sin(angle), 0) {
     state.x = down * Eigen::RowVector4d(0, 0.1, 0.2, 0.3);
@@ -46,8 +59,6 @@ struct OnSlope {
                            {1e-3, 1, stiff_enough(solver), &state});
   }
   Vector3d down;
-  State state;
-  std::unique_ptr<Stepper> stepper;
 };
 
 TEST_P(Friction, HoldsARopeOnASlopeBelowItsAngleAndSlowsItAbove) {
@@ -55,10 +66,8 @@ TEST_P(Friction, HoldsARopeOnASlopeBelowItsAngleAndSlowsItAbove) {
   const double critical = std::tan(angle);
   OnSlope held(GetParam(), 1.02 * critical, angle), slides(GetParam(), 0.5 * critical, angle);
   const Positions start = held.state.x;
-  for (int step = 0; step < 200; ++step) {
-    ASSERT_TRUE(held.stepper->advance(held.state, short_step));
-    ASSERT_TRUE(slides.stepper->advance(slides.state, short_step));
-  }
+  held.advance(200);
+  slides.advance(200);
   EXPECT_LT((held.state.x - start).cwiseAbs().maxCoeff(), 1e-6);
   const double a = gravity * std::sin(angle) * 0.5;  // half of it is friction's
   for (int i = 0; i < 4; ++i) {
@@ -75,83 +84,35 @@ TEST(FrictionInEveryStepper, StopsASlidingRopeWhereCoulombSays) {
     OnSlope rope(solver, friction, 0);
     rope.state.v.row(0).setConstant(speed);
     const Positions start = rope.state.x;
-    for (int step = 0; step < 200; ++step)
-      ASSERT_TRUE(rope.stepper->advance(rope.state, short_step));
+    rope.advance(200);
     const double way = speed * speed / (2 * friction * gravity);
     EXPECT_NEAR((rope.state.x - start).row(0).mean(), way, 0.01 * way) << solver;
     EXPECT_LT(rope.state.v.cwiseAbs().maxCoeff(), 1e-6) << solver;
   }
 }
 
-// ---- One vertex on a ground through the origin that moves ----
-
-constexpr double tick = 1.0 / 128;  // s, so that times are exact
-
-struct OnGround {
-  OnGround(double friction, BodyMotion motion, const Vector3d& at) {
-    ProblemParts parts;
-    parts.mass = {0.3};
-    parts.collider = std::make_shared<const testing::Ground>(Vector3d(0, 1, 0), 0, friction);
-    parts.body_motion = std::move(motion);
-    state = {at, Positions::Zero(3, 1), 0};
-    stepper = make_stepper("fast_projection", std::make_shared<const Problem>(parts), {0.01, 1});
-  }
-
-  State state;
-  std::unique_ptr<Stepper> stepper;
-};
-
-BodyMotion straight(const Vector3d& velocity) {
-  return [=](double time) { return Pose{Eigen::Matrix3d::Identity(), time * velocity}; };
-}
-
-// Friction accelerates by mu g until the vertex goes with the belt.
-TEST(MovingGround, TakesALoadAlongAtTheRateOfFriction) {
-  const double mu = 0.25, speed = 0.8;
-  OnGround load(mu, straight({speed, 0, 0}), {0, 0, 0});
-  double v = 0, x = 0;
-  for (int step = 1; step <= 128; ++step) {
-    ASSERT_TRUE(load.stepper->advance(load.state, tick));
-    v = std::min(speed, v + mu * gravity * tick);
-    x += tick * v;
-    ASSERT_NEAR(load.state.v(0, 0), v, 1e-12) << "step " << step;
-    ASSERT_NEAR(load.state.x(0, 0), x, 1e-12) << "step " << step;
-    ASSERT_NEAR(load.state.x(1, 0), 0, 1e-8) << "step " << step;
-  }
-  EXPECT_EQ(v, speed);
-}
-
-// The vertex is carried round where friction bears its centripetal acceleration, and flung off
-// where not.
-TEST(MovingGround, HoldsOnATurntableWhatFrictionCanHold) {
+// A vertex is carried round where friction bears its centripetal acceleration, and flung off where
+// not.
+TEST(Turntable, HoldsWhatFrictionCanHold) {
   constexpr double rate = 4, radius = 0.5, needed = rate * rate * radius / gravity;
   const auto turn = [](double time) {
     return Eigen::AngleAxisd(rate * time, Vector3d::UnitY()).toRotationMatrix();
   };
   const auto after = [&](double friction) {
-    OnGround load(friction,
-                  [=](double time) {
-                    return Pose{turn(time), Vector3d::Zero()};
-                  },
-                  {radius, 0, 0});
-    load.state.v.col(0) = Vector3d(0, 0, -rate * radius);  // with the table
-    while (load.state.time < 0.5) EXPECT_TRUE(load.stepper->advance(load.state, tick));
+    ProblemParts parts;
+    parts.mass = {0.3};
+    parts.collider = std::make_shared<const testing::Ground>(Vector3d(0, 1, 0), 0, friction);
+    parts.body_motion = [=](double time) { return Pose{turn(time), Vector3d::Zero()}; };
+    Moving load;
+    load.stepper =
+        make_stepper("fast_projection", std::make_shared<const Problem>(parts), {0.01, 1});
+    load.state = {Vector3d(radius, 0, 0), Vector3d(0, 0, -rate * radius), 0};  // with the table
+    load.advance(64, 1.0 / 128);
     return load.state;
   };
   const State held = after(1.1 * needed), flung = after(0.5 * needed);
   EXPECT_LT((held.x.col(0) - turn(held.time) * Vector3d(radius, 0, 0)).norm(), 1e-12);
   EXPECT_GT(flung.x.col(0).norm(), 1.1 * radius);
-}
-
-// A body that rises pushes, and a lift that falls faster than its load leaves it behind.
-TEST(MovingGround, CarriesItsLoadUpAndLosesItDownwards) {
-  OnGround up(0, straight({0, 0.5, 0}), {0, 0, 0}), down(0, straight({0, -20, 0}), {0, 0, 0});
-  for (int step = 0; step < 64; ++step) {
-    ASSERT_TRUE(up.stepper->advance(up.state, tick));
-    ASSERT_TRUE(down.stepper->advance(down.state, tick));
-  }
-  EXPECT_NEAR(up.state.x(1, 0), 0.5 * up.state.time, 1e-8);
-  EXPECT_NEAR(down.state.v(1, 0), -gravity * down.state.time, 1e-12);
 }
 
 // A post of `sides` facets each way round, along z, with the radius R to the middles of its facets.
@@ -173,7 +134,7 @@ TriangleMesh post(int sides, double radius) {
 }
 
 // A rope over half of a post: a vertex on the middle of each upper facet, a load on either end.
-struct OnPost {
+struct OnPost : Moving {
   static constexpr int vertices = 32;
   static constexpr double radius = 0.1, mass = 0.01, light = 0.5, friction = 0.3;
   static constexpr double turn = pi / vertices;  // of the rope, at each vertex
@@ -215,9 +176,9 @@ struct OnPost {
     }
     return tension / gravity;
   }
-
-  State state;
-  std::unique_ptr<Stepper> stepper;
+  // Of the heavy load.
+  double height() const { return state.x(1, vertices + 1); }
+  double speed() const { return -state.v(1, vertices + 1); }  // downwards
 };
 
 // Euler (1769), Eytelwein (1808): the tensions on both sides differ by e^(mu theta) at most.
@@ -225,25 +186,18 @@ struct OnPost {
 // the rope to rest, or lets it slide on.
 TEST_P(Friction, OfARopeRoundAPostGrowsAsTheCapstanEquationSays) {
   OnPost held(GetParam(), 0.8 * OnPost::heaviest()), slips(GetParam(), 1.2 * OnPost::heaviest());
-  const auto fall = [](OnPost& rope, int steps) {
-    for (int step = 0; step < steps; ++step) {
-      const StepResult result = rope.stepper->advance(rope.state, short_step);
-      EXPECT_TRUE(result) << result.detail << " at t = " << rope.state.time;
-      if (!result) break;
-    }
-    return rope.state.x(1, rope.state.x.cols() - 1);
-  };
-  const double slipped = fall(held, 80), later = fall(held, 40);
+  held.advance(80);
+  const double slipped = held.height();
+  held.advance(40);
   EXPECT_GT(slipped, -0.25 - 0.015);
-  EXPECT_NEAR(later, slipped, 2e-3);  // 9 cm if nothing held it
+  EXPECT_NEAR(held.height(), slipped, 2e-3);  // 9 cm if nothing held it
   // 0.2 of the load pulls the whole.
   const double mass = 1.2 * OnPost::heaviest() + OnPost::light + OnPost::vertices * OnPost::mass;
   const double acceleration = 0.2 * OnPost::heaviest() * gravity / mass;
-  (void)fall(slips, 20);
-  const auto speed = [&slips] { return -slips.state.v(1, slips.state.v.cols() - 1); };
-  const double before = speed();
-  (void)fall(slips, 40);
-  EXPECT_NEAR(speed() - before, acceleration * 40 * short_step,
+  slips.advance(20);
+  const double before = slips.speed();
+  slips.advance(40);
+  EXPECT_NEAR(slips.speed() - before, acceleration * 40 * short_step,
               0.35 * acceleration * 40 * short_step);
 }
 

@@ -55,16 +55,11 @@ TEST(FastProjection, FirstIterationIsIcdsFirstNewtonIteration) {
     // And both are x0 - W J^T (J W J^T)^-1 C, densely.
     const Eigen::MatrixXd j = testing::dense_gradient(p, candidate);
     const Eigen::MatrixXd wjt = testing::inverse_masses3(p).asDiagonal() * j.transpose();
-    Eigen::VectorXd c(p.constraints());
-    for (int k = 0; k < c.size(); ++k) {
-      const auto [a, b] = p.edges()[k];
-      const double l = p.rest_length()[k];
-      c[k] = (candidate.col(b) - candidate.col(a)).squaredNorm() / l - l;
-    }
+    const Eigen::VectorXd c =  // |d|^2 / l - l, of which j d is twice the first part
+        0.5 * j * candidate.reshaped() -
+        Eigen::VectorXd::Map(p.rest_length().data(), p.constraints());
     const Eigen::VectorXd dx = -wjt * (j * wjt).ldlt().solve(c);
-    EXPECT_LT(
-        (fast.x - candidate - Eigen::Map<const Positions>(dx.data(), 3, fast.x.cols())).norm(),
-        1e-10);
+    EXPECT_LT(((fast.x - candidate).reshaped() - dx).norm(), 1e-10);
   });
 }
 
@@ -128,22 +123,16 @@ TEST(Icd, SolutionIsTheClosestPointOfTheManifold) {
     EXPECT_LT((icd.x - oracle.x).norm(), 1e-7);
 
     const auto distance = [&](const Positions& x) {
-      return (x - candidate)
-          .colwise()
-          .squaredNorm()
-          .dot(Eigen::Map<const Eigen::VectorXd>(p.mass().data(), p.vertices()));
+      const auto mass = Eigen::RowVectorXd::Map(p.mass().data(), p.vertices());
+      return (x - candidate).colwise().squaredNorm().dot(mass);
     };
     Eigen::MatrixXd free_j = testing::dense_gradient(p, icd.x);
     for (const int v : p.pinned()) free_j.middleCols(3 * v, 3).setZero();
     const Eigen::MatrixXd null_space = free_j.fullPivLu().kernel();
     for (int trial = 0; trial < 20; ++trial) {
-      const Eigen::VectorXd weights = Eigen::VectorXd::NullaryExpr(
-          null_space.cols(), [&](Eigen::Index) { return testing::uniform(random, -1, 1); });
-      Eigen::VectorXd direction = null_space * weights;
+      Eigen::VectorXd direction = null_space * testing::random_matrix(random, null_space.cols(), 1);
       for (const int v : p.pinned()) direction.segment<3>(3 * v).setZero();
-      const Positions moved =
-          icd.x +
-          1e-3 / direction.norm() * Eigen::Map<const Positions>(direction.data(), 3, icd.x.cols());
+      const Positions moved = icd.x + 1e-3 * direction.normalized().reshaped(3, icd.x.cols());
       const Filtered back("fast_projection", {mesh.problem, icd.x}, moved, {1e-13});
       EXPECT_GE(distance(back.x), distance(icd.x) - 1e-11);
     }

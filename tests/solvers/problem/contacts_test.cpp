@@ -111,8 +111,7 @@ TEST(Contacts, SettlePushesWhatIsInsideOntoItsPlane) {
         EXPECT_EQ(contacts.find(x, fallen.work), 0);
         continue;  // settled twice
       }
-      const Positions pull =
-          Positions::NullaryExpr(3, n, [&] { return uniform(random, -0.3, 0.3); });
+      const Positions pull = 0.3 * testing::random_matrix(random, 3, n);
       x += pull;
       free += pull;
     }

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "solvers/problem/forces.h"
+#include "solvers/problem/bending.h"
 #include "solvers/registry.h"
 
 namespace inextensible {
@@ -21,7 +21,7 @@ struct Start {
 // A horizontal yarn in n vertices, clamped at the first two, length 1 m from the middle of its
 // first link on; Gamma = rho g L^3 / EI (Romero et al. 2021; Peirce 1930). Its end vertex is half a
 // link's mass, so that every link bears what lies beyond its middle.
-Start cantilever(int n, double gamma, bool implicit) {
+Start cantilever(int n, double gamma) {
   const double link = 1 / (n - 1.5), density = 0.1, rigidity = density * g / gamma;
   ProblemParts parts;
   parts.mass.assign(n, density * link);
@@ -33,7 +33,7 @@ Start cantilever(int n, double gamma, bool implicit) {
     parts.bending.push_back(yarn_bending(i - 1, i, i + 1, link, link, rigidity));
   }
   for (const double m : parts.mass) parts.drag.push_back(6 * m);
-  parts.implicit_forces = implicit;
+  parts.implicit_forces = true;
   Start start;
   start.state.x.setZero(3, n);
   start.state.v.setZero(3, n);
@@ -75,7 +75,7 @@ TEST(Cantilever, HangsAsTheHeavyElasticaDoesByEveryRouteThatBendingTakes) {
   for (const auto& [solver, exact, n, h, settings] : cases) {
     SCOPED_TRACE(std::string(solver) + ", Gamma " + std::to_string(exact.gamma) + ", " +
                  std::to_string(n) + " vertices");
-    Start start = cantilever(n, exact.gamma, true);
+    Start start = cantilever(n, exact.gamma);
     run(*make_stepper(solver, start.problem, {1e-6, 1, settings}), start.state, h, 15);
     EXPECT_NEAR(start.state.x(0, n - 1), exact.reach, 0.02 * std::max(exact.reach, exact.drop));
     EXPECT_NEAR(-start.state.x(1, n - 1), exact.drop, 0.02 * std::max(exact.reach, exact.drop));
@@ -83,9 +83,9 @@ TEST(Cantilever, HangsAsTheHeavyElasticaDoesByEveryRouteThatBendingTakes) {
   }
 }
 
-// A square of cloth of n x n vertices, pinned at two corners, stiff enough in shear and bending to
-// matter.
-Start cloth(int n, double shear, bool implicit) {
+// A square of cloth that is pinned at two corners, stiff enough in shear and bending to matter.
+Start cloth(bool implicit) {
+  constexpr int n = 5;  // vertices along a side
   const double link = 1.0 / (n - 1);
   ProblemParts parts;
   parts.mass.assign(n * n, 0.2 / (n * n));
@@ -95,7 +95,7 @@ Start cloth(int n, double shear, bool implicit) {
   Start start;
   start.state.x.resize(3, n * n);
   start.state.v.setZero(3, n * n);
-  const auto at = [n](int i, int j) { return i * n + j; };
+  const auto at = [](int i, int j) { return i * n + j; };
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) {
       start.state.x.col(at(i, j)) << j * link, 0, i * link;
@@ -114,7 +114,7 @@ Start cloth(int n, double shear, bool implicit) {
   }
   parts.rest_length.assign(parts.edges.size(), link);
   parts.shear->rest_length.assign(parts.shear->edges.size(), std::sqrt(2.0) * link);
-  parts.shear->stiffness.assign(parts.shear->edges.size(), shear);
+  parts.shear->stiffness.assign(parts.shear->edges.size(), 5);
   parts.implicit_forces = implicit;
   start.problem = std::make_shared<const Problem>(std::move(parts));
   return start;
@@ -129,7 +129,7 @@ Positions after(const char* solver, const Start& start, double h, double time,
 }
 
 TEST(ImplicitForces, HaveTheOrderOfTheirStepper) {
-  const Start start = cloth(5, 5, true);
+  const Start start = cloth(true);
   const Settings conserving{{"spectral_radius", 1.0}};
   const struct {
     const char* solver;
@@ -149,38 +149,14 @@ TEST(ImplicitForces, HaveTheOrderOfTheirStepper) {
 
 TEST(ImplicitForces, TendToTheSameMotionAsExplicitOnes) {
   const double h = 1.0 / 6400, time = 0.2;
-  const Positions x = after("fast_projection@bdf2", cloth(5, 5, true), h, time);
-  const Positions y = after("fast_projection@bdf2", cloth(5, 5, false), h, time);
+  const Positions x = after("fast_projection@bdf2", cloth(true), h, time);
+  const Positions y = after("fast_projection@bdf2", cloth(false), h, time);
   EXPECT_LT((x - y).cwiseAbs().maxCoeff(), 3e-5);
   for (const bool implicit : {false, true}) {
-    const Positions rattle = after("rattle", cloth(5, 5, implicit), h, time);
+    const Positions rattle = after("rattle", cloth(implicit), h, time);
     EXPECT_LT((x - rattle).cwiseAbs().maxCoeff(), 3e-5) << implicit;
   }
-  const double moved = (x - cloth(5, 5, true).state.x).cwiseAbs().maxCoeff();
-  EXPECT_GT(moved, 0.05);
-}
-
-TEST(ImplicitForces, AreStableWhereExplicitOnesBlowUp) {
-  for (const char* solver : {"fast_projection", "fast_projection@bdf2", "fast_projection@midpoint",
-                             "gauss_seidel", "jacobi", "icd"}) {
-    const Start start = cloth(7, 50, true);  // explicit ones would want 1/100 s
-    const auto stepper = make_stepper(solver, start.problem, {0.01, 1, {}});
-    State state = start.state;
-    const double begin = potential_energy(*start.problem, state.x);
-    for (int i = 0; i < 50; ++i) {
-      ASSERT_TRUE(stepper->advance(state, 0.04)) << solver << ", step " << i;
-      ASSERT_LT(potential_energy(*start.problem, state.x), begin + 0.05 * 0.2 * g) << solver;
-    }
-  }
-  const Start start = cloth(7, 50, false);
-  const auto stepper = make_stepper("fast_projection", start.problem, {0.01, 1, {}});
-  State state = start.state;
-  bool blown = false;
-  for (int i = 0; i < 50 && !blown; ++i) {
-    blown = !stepper->advance(state, 0.04) ||
-            !(potential_energy(*start.problem, state.x) < 0.05 * 0.2 * g);
-  }
-  EXPECT_TRUE(blown);
+  EXPECT_GT((x - cloth(true).state.x).cwiseAbs().maxCoeff(), 0.05) << "hardly anything moved";
 }
 
 // A vertex of 0.5 kg on a spring of length 1 that is stretched to 1.1, after one step of 0.05 s.

@@ -33,8 +33,7 @@ TEST(EdgeConstraints, GradientMatchesCentralDifferencesOfC) {
     VectorXd c(m), plus(m), minus(m), rate(m);
     edges.linearize(x, u, c);
     for (int trial = 0; trial < 36; ++trial) {
-      const Positions way =
-          Positions::NullaryExpr(3, x.cols(), [&] { return testing::uniform(random, -1, 1); });
+      const Positions way = testing::random_matrix(random, 3, x.cols());
       edges.linearize(x + way, ignored, plus);
       edges.linearize(x - way, ignored, minus);
       edges.rate(u, way, rate);
@@ -92,13 +91,11 @@ TEST(EdgeConstraints, WorstNamesTheProblemsEdgeInAnyOrder) {
 // place. Some vertices are held by planes, and move within these: W (I - n n^T).
 TEST(SchurComplement, EqualsTheDenseProductInEachTriangleWithAndWithoutContacts) {
   testing::for_seeds(seeds, [&](testing::Random& random, std::uint64_t) {
-    const auto ground =
-        std::make_shared<const testing::Ground>(Eigen::Vector3d(0.3, 1, 0.2), 1, 0.4);
     const auto mesh = random_mesh(random, 4, 5, 3);
     ProblemParts parts = testing::parts_of(*mesh.problem);
     parts.edges.push_back({parts.edges[2].b, parts.edges[2].a});
     parts.rest_length.push_back(0.7);
-    parts.collider = ground;
+    parts.collider = std::make_shared<const testing::Ground>(Eigen::Vector3d(0.3, 1, 0.2), 1, 0.4);
     const Problem problem(parts);
     const Positions y = testing::perturbed(random, mesh, 0.3);
     Positions x = testing::perturbed(random, mesh, 0.3);
@@ -157,7 +154,7 @@ TEST(SchurComplement, EqualsTheDenseProductInEachTriangleWithAndWithoutContacts)
 }
 
 // SHAKE's matrix, directions at two positions; a tree that is a path has a tridiagonal one.
-TEST(LuSolver, IsBackwardStableOnShakesMatricesAndSeesAnEmptyColumn) {
+TEST(LuSolver, IsBackwardStableOnShakesMatrices) {
   for (const bool chain : {true, false}) {
     testing::for_seeds(seeds, [&](testing::Random& random, std::uint64_t seed) {
       SCOPED_TRACE((chain ? "chain, seed " : "graph, seed ") + std::to_string(seed));
@@ -180,9 +177,6 @@ TEST(LuSolver, IsBackwardStableOnShakesMatricesAndSeesAnEmptyColumn) {
       VectorXd x = b;
       solver->solve(x.data());
       EXPECT_LT((matrix * x - b).norm(), 1e-12 * (matrix.norm() * x.norm() + b.norm()));
-      for (int i = schur.pattern().column_start[3]; i < schur.pattern().column_start[4]; ++i)
-        solver->values()[i] = 0;
-      EXPECT_FALSE(solver->factor());
     });
   }
 }

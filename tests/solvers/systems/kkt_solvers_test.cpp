@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <tuple>
 
 #include "solvers/systems/kkt_system.h"
 #include "solvers/systems/schur_complement.h"
@@ -25,22 +26,16 @@ MatrixXd dense_kkt(const Problem& problem, const Positions& x, const VectorXd& m
   for (Eigen::Index k = 0; k < m; ++k) {
     const auto [a, b] = problem.edges()[k];
     const double curvature = 2 * mu[k] / problem.rest_length()[k];
-    for (int axis = 0; axis < 3; ++axis) {
-      kkt(3 * a + axis, 3 * a + axis) += curvature;
-      kkt(3 * b + axis, 3 * b + axis) += curvature;
-      kkt(3 * a + axis, 3 * b + axis) -= curvature;
-      kkt(3 * b + axis, 3 * a + axis) -= curvature;
-    }
+    for (const auto& [row, column, sign] : {std::tuple(a, a, 1), {b, b, 1}, {a, b, -1}, {b, a, -1}})
+      kkt.block<3, 3>(3 * row, 3 * column).diagonal().array() += sign * curvature;
   }
   const MatrixXd j = testing::dense_gradient(problem, x);
   kkt.bottomLeftCorner(m, n3) = j;
   kkt.topRightCorner(n3, m) = j.transpose();
   for (const int v : problem.pinned()) {
-    for (int i = 3 * v; i < 3 * v + 3; ++i) {
-      kkt.row(i).setZero();
-      kkt.col(i).setZero();
-      kkt(i, i) = 1;
-    }
+    kkt.middleRows<3>(3 * v).setZero();
+    kkt.middleCols<3>(3 * v).setZero();
+    kkt.block<3, 3>(3 * v, 3 * v).setIdentity();
   }
   return kkt;
 }
@@ -116,9 +111,7 @@ TEST_P(KktSolvers, SolveTheDenseSaddlePointSystemAndNoticeTheWrongInertia) {
       const auto dense = [&](const VectorXd& multipliers) {
         return dense_kkt(problem, mesh.x, multipliers, kkt->mean_mass());
       };
-      const VectorXd eigenvalues =
-          Eigen::SelfAdjointEigenSolver<MatrixXd>(dense(natural_mu), Eigen::EigenvaluesOnly)
-              .eigenvalues();
+      const VectorXd eigenvalues = dense(natural_mu).selfadjointView<Eigen::Lower>().eigenvalues();
       const bool proper = (eigenvalues.array() < 0).count() == m;
       ++seen[proper];
       const bool certain = eigenvalues.cwiseAbs().minCoeff() > 1e-6;
