@@ -19,7 +19,7 @@ using inextensible::State;
 constexpr int around = 24;
 
 Scene still_garment() {
-  return build("garment", {{"n", around}, {"sway", 0}, {"turn", 0}, {"friction", 0.05}});
+  return built_scene("garment", {{"n", around}, {"sway", 0}, {"turn", 0}, {"friction", 0.05}});
 }
 
 // By yarns, and a step that a tight rim refuses is halved: fast projection is thrown off a tight
