@@ -67,7 +67,7 @@ struct Film : SceneOptions {
     command.option("--fps", frames_per_second, "frames a second", "N", Bounds::positive());
     command.option("--stills", stills,
                    "times of the pictures in a .png, s, between commas; default: four", "TIME",
-                   Bounds::at_least(0));
+                   {.least = 0});
     command.option("--width", width, "of each picture; default: 480", "PIXELS",
                    {.least = 16, .most = 4096, .whole = true});
     command.option("--out", out,

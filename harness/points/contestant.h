@@ -44,13 +44,11 @@ Contestants::iterator find_contestant(Contestants& all, const std::string& name)
 std::string label_of(const Contestant& contestant);
 
 // A list of "icd", or {"name": "icd_loose", "solver": "icd", "settings": {...}, "label": "...",
-// "unranked": true}. All throw UsageError, naming `where`, key and value.
+// "unranked": true}, as in a suite that fits its schema. All throw UsageError, naming `where`.
 Contestants read_contestants(const nlohmann::json& solvers, const std::string& where);
 // The solvers of suites that name none: all that compete and take every part of the scene, on a
 // chain without those that are another one there.
 Contestants competitors(const SceneType& type, const SceneParameters& given);
-inextensible::Settings read_settings(const nlohmann::json& object, const std::string& where,
-                                     const inextensible::Backend& backend);
 // Throws unless the solver accepts them.
 void check_settings(const inextensible::Settings& settings, const std::string& where,
                     const inextensible::Backend& backend);

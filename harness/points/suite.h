@@ -1,5 +1,4 @@
-// A suite: what a sweep runs. Read from JSON (configs/*.json, schema configs/suite.schema.json),
-// strict about keys.
+// A suite: what a sweep runs. Read from JSON (configs/*.json, schema configs/suite.schema.json).
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -58,6 +57,10 @@ Contestants contestants_of(const Suite& suite);
 Suite read_suite(const std::string& path);
 // The same of a text; `path` is for messages.
 Suite parse_suite(const std::string& text, const std::string& path);
+// Its two steps, for options that change the document in between: JSON that fits the schema, and
+// what it says.
+nlohmann::json suite_document(const std::string& text, const std::string& path);
+Suite suite_of(const nlohmann::json& document, const std::string& path);
 // parse_suite() reads it back.
 nlohmann::json to_json(const Suite& suite);
 
