@@ -90,8 +90,6 @@ std::string lines(const ordered_json& value, int depth) {
 
 std::string compact(const json& value) { return written(value); }
 
-std::string line_of(const ordered_json& value) { return lines(value, 0); }
-
 std::string document_text(const ordered_json& document) { return lines(document, 2) + "\n"; }
 
 }  // namespace harness

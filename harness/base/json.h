@@ -43,9 +43,6 @@ std::string value_text(const nlohmann::json& value);
 // keeps what can be kept.
 std::string compact(const nlohmann::json& value);
 
-// On one line: {"a": 1, "b": [1, 2]}.
-std::string line_of(const nlohmann::ordered_json& value);
-
 // A document for a repository, whose differences can be read: each entry of its objects and each
 // item of its lists is one line.
 std::string document_text(const nlohmann::ordered_json& document);
