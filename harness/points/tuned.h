@@ -20,6 +20,8 @@ struct TunedPlace : SettingsAt {                 // settings: those that are not
 
   double gain() const { return default_seconds / seconds; }
 };
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TunedPlace, resolution, limit, settings, evaluations,
+                                   default_seconds, default_step, seconds, step)
 
 struct TunedEntry {
   std::string kind;  // of scene
@@ -31,6 +33,7 @@ struct TunedEntry {
 
   std::vector<SettingsAt> settings_at() const;
 };
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TunedEntry, kind, solver, budget, places, rule, context)
 
 struct Tuned {
   std::string file;  // its name
@@ -43,7 +46,7 @@ struct Tuned {
 // Throws UsageError, naming file, key and value.
 Tuned parse_tuned(const std::string& text, const std::string& file);
 
-nlohmann::ordered_json tuned_document(const std::vector<TunedEntry>& entries);
+nlohmann::json tuned_document(const std::vector<TunedEntry>& entries);
 
 // Under its own name a solver gets its tuned settings, as far as neither its entry nor `given`
 // says otherwise.
