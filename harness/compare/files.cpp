@@ -1,7 +1,6 @@
 // What is compared, read from files: gates, results and baselines; and a baseline written.
 #include "harness/base/files.h"
 
-#include <algorithm>
 #include <array>
 
 #include "harness/base/errors.h"
