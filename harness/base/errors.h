@@ -21,11 +21,11 @@ std::string closest(std::string_view name, const std::vector<std::string>& known
 [[nodiscard]] UsageError unknown_name(std::string_view kind, std::string_view name,
                                       const std::vector<std::string>& known);
 
-// Throws that unless `name` is one of the known ones. where: begins the message; may be empty.
+// Throws unknown_name() unless `name` is known. where: begins the message; may be empty.
 void check_known(std::string_view kind, std::string_view name,
                  const std::vector<std::string>& known, const std::string& where = "");
 
-// The names of solvers, scenes or settings, to be suggested.
+// The names of solvers, scenes or settings, as suggestions.
 template <class Infos>
 std::vector<std::string> names_of(const Infos& infos) {
   std::vector<std::string> names;

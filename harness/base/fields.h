@@ -1,5 +1,5 @@
-// A struct's fields as files have them, each listed once in a table beside the struct. JSON both
-// ways, schemas, `bench list` and the tests that fill structs at random follow from the table.
+// A struct's fields as they appear in files, each listed once in a table beside the struct. JSON
+// in both directions, schemas, `bench list` and the tests with random structs use the table.
 #pragma once
 
 #include <cmath>

@@ -2,7 +2,7 @@
 // JSON at a time, so that whatever ends the program costs one result at most.
 //
 // A line is {"header": ...}, {"key": ..., "value": ...} or {"forget": key}, each with "check", a
-// hash of the rest. The last header counts, and forgives what was damaged before it.
+// hash of the rest. The last header counts; damage before it is ignored.
 #pragma once
 
 #include <functional>

@@ -1,7 +1,9 @@
 #include "harness/base/json.h"
 
 #include <cmath>
+#include <set>
 #include <tuple>
+#include <vector>
 
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
@@ -24,76 +26,6 @@ std::string Bounds::text() const {
 bool Bounds::hold(double number) const {
   return std::isfinite(number) && (above ? number > least : number >= least) &&
          (below ? number < most : number <= most) && (!whole || number == std::floor(number));
-}
-
-JsonReader::JsonReader(const json& object, std::string where)
-    : object_(object), where_(std::move(where)) {
-  if (!object.is_object())
-    throw UsageError(where_ + " is " + value_text(object) + ", must be an object { ... }");
-}
-
-const json* JsonReader::find(const std::string& key) {
-  known_.insert(key);
-  const auto place = object_.find(key);
-  return place == object_.end() ? nullptr : &*place;
-}
-
-std::string JsonReader::text(const std::string& key, const std::string& otherwise) {
-  const json* value = find(key);
-  if (!value) return otherwise;
-  if (!value->is_string()) fail_at(key, *value, "a text in quotes");
-  return value->get<std::string>();
-}
-
-bool JsonReader::flag(const std::string& key, bool otherwise) {
-  const json* value = find(key);
-  if (!value) return otherwise;
-  if (!value->is_boolean()) fail_at(key, *value, "true or false");
-  return value->get<bool>();
-}
-
-double JsonReader::number(const std::string& key, double otherwise, const Bounds& bounds) {
-  const json* value = find(key);
-  return value ? checked(key, *value, bounds) : otherwise;
-}
-
-std::vector<double> JsonReader::numbers(const std::string& key, const Bounds& bounds) {
-  std::vector<double> result;
-  for (const json& item : list(key)) result.push_back(checked(key, item, bounds));
-  return result;
-}
-
-std::vector<std::string> JsonReader::texts(const std::string& key) {
-  std::vector<std::string> result;
-  for (const json& item : list(key)) {
-    if (!item.is_string()) fail_at(key, item, "a list of texts");
-    result.push_back(item.get<std::string>());
-  }
-  return result;
-}
-
-void JsonReader::finish() const {
-  const std::vector<std::string> known(known_.begin(), known_.end());
-  for (const auto& entry : object_.items()) check_known("key", entry.key(), known, where_);
-}
-
-void JsonReader::fail_at(const std::string& key, const json& value,
-                         const std::string& wanted) const {
-  throw UsageError(where(key) + " is " + value_text(value) + ", must be " + wanted);
-}
-
-double JsonReader::checked(const std::string& key, const json& value, const Bounds& bounds) const {
-  if (!value.is_number() || !bounds.hold(value.get<double>())) fail_at(key, value, bounds.text());
-  return value.get<double>();
-}
-
-const json& JsonReader::list(const std::string& key) {
-  static const json none = json::array();
-  const json* value = find(key);
-  if (!value) return none;
-  if (!value->is_array() || value->empty())
-    fail_at(key, *value, "a list [ ... ] that is not empty");
-  return *value;
 }
 
 // Looks at the text before it becomes a tree: trees are taken apart by recursion, and keep the last
@@ -157,8 +89,6 @@ std::string lines(const ordered_json& value, int depth) {
 }  // namespace
 
 std::string compact(const json& value) { return written(value); }
-
-std::string line_of(const ordered_json& value) { return lines(value, 0); }
 
 std::string document_text(const ordered_json& document) { return lines(document, 2) + "\n"; }
 

@@ -1,11 +1,8 @@
-// Input from users: numbers within bounds, and JSON with // comments, read strictly, with messages
-// that name file, key and value.
+// Input from users: numbers within bounds, and JSON with // comments.
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <set>
 #include <string>
-#include <vector>
 
 namespace harness {
 
@@ -22,7 +19,6 @@ struct Bounds {
   static Bounds positive() { return {.least = 0, .above = true}; }
   // A strain limit: at 1 an edge may vanish.
   static Bounds strain() { return {.least = 0, .above = true, .most = 1, .below = true}; }
-  static Bounds at_least(double least) { return {.least = least}; }
   // One that fits into an int.
   static Bounds whole_number(double least) {
     return {.least = least, .most = 2147483647, .whole = true};
@@ -31,34 +27,6 @@ struct Bounds {
   static Bounds exact_number() { return {.least = 0, .most = 9007199254740992, .whole = true}; }
   std::string text() const;  // "a whole number of at least 2"
   bool hold(double number) const;
-};
-
-// A JSON object whose keys are read one by one; finish() refuses keys that were not read. All throw
-// UsageError.
-class JsonReader {
- public:
-  JsonReader(const nlohmann::json& object, std::string where);
-
-  const nlohmann::json* find(const std::string& key);  // null if it is not there
-  std::string text(const std::string& key, const std::string& otherwise);
-  bool flag(const std::string& key, bool otherwise);
-  double number(const std::string& key, double otherwise, const Bounds& bounds);
-  std::vector<double> numbers(const std::string& key, const Bounds& bounds);
-  std::vector<std::string> texts(const std::string& key);
-
-  void finish() const;
-
-  std::string where(const std::string& key) const { return where_ + ": '" + key + "'"; }
-  [[noreturn]] void fail_at(const std::string& key, const nlohmann::json& value,
-                            const std::string& wanted) const;
-
- private:
-  double checked(const std::string& key, const nlohmann::json& value, const Bounds& bounds) const;
-  const nlohmann::json& list(const std::string& key);
-
-  const nlohmann::json& object_;
-  std::string where_;
-  std::set<std::string> known_;
 };
 
 // JSON from outside, with // comments or without. name: the file, or what else the text is. Throws
@@ -74,9 +42,6 @@ std::string value_text(const nlohmann::json& value);
 // As programs read it: without spaces. Text that is not UTF-8 (a path, a message from elsewhere)
 // keeps what can be kept.
 std::string compact(const nlohmann::json& value);
-
-// On one line: {"a": 1, "b": [1, 2]}.
-std::string line_of(const nlohmann::ordered_json& value);
 
 // A document for a repository, whose differences can be read: each entry of its objects and each
 // item of its lists is one line.

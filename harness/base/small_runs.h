@@ -1,5 +1,5 @@
-// What a plan of small runs (hard cases, known answers) is told, and a sweep's part on one of
-// several machines (--shard).
+// Callbacks of a plan of small runs (hard cases, known answers), and the part of a sweep that one
+// of several machines runs (--shard).
 #pragma once
 
 #include <cstdio>

@@ -21,7 +21,7 @@ void append(std::string& list, const std::string& more, const char* separator = 
 // A text shortened for a message: its beginning if it is long, and always one line.
 std::string shortened(const std::string& text, std::size_t most = 120);
 
-// Lines of more than `columns` are broken at spaces and indented; a longer word stays whole.
+// Breaks lines longer than `columns` at spaces and indents the rest; longer words stay whole.
 std::string fitted(const std::string& text, std::size_t columns);
 
 // "1/250" for a step of 0.004 s, "-" for none (NaN).

@@ -1,5 +1,5 @@
-// One program at a time takes times on a machine: two side by side slow each other down, and
-// neither's times mean anything.
+// Only one program at a time measures times on a machine: two side by side slow each other down,
+// and neither's times mean anything.
 #pragma once
 
 #include "harness/base/files.h"

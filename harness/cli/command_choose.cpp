@@ -167,20 +167,20 @@ Trials measure(const Suite& suite, const Wish& wish, const ChooseLimits& limits,
 
 struct Choose : SceneOptions {
   std::string solver;
-  double limit = 0.01, budget = 0;  // budget: ms; 0: none
-  double frames_per_second = 60, error = headline_error, seconds = 60;
+  double limit = 0.01, seconds = 60;
+  Wish wish;  // its budget in ms until run()
   bool no_wait = false;
 
   void declare(const Command& command) {
     scene = "drape";
     SceneOptions::declare(command, scene);
     command.option("--limit", limit, "strain limit; default: 0.01", "STRAIN", Bounds::strain());
-    command.option("--error", error,
+    command.option("--error", wish.error,
                    "permitted distance from the reference, over the scene's size; default: 0.02",
                    "E", Bounds::positive());
-    command.option("--fps", frames_per_second,
+    command.option("--fps", wish.rate,
                    "frames a second: 24, 30 or 60 (default); no step is longer than a frame", "N");
-    command.option("--budget", budget, "milliseconds of computing that a frame may take", "MS",
+    command.option("--budget", wish.budget, "milliseconds of computing that a frame may take", "MS",
                    Bounds::positive());
     add_solver(command, solver);
     command.option("--seconds", seconds, "time that measuring may take; default: 60", "S",
@@ -193,9 +193,9 @@ struct Choose : SceneOptions {
     Suite chosen;
     chosen.name = "choose";
     chosen.reps = 1;
-    chosen.finest_error = std::min(error, headline_error);
+    chosen.finest_error = std::min(wish.error, headline_error);
     chosen.timeout = seconds;
-    chosen.far_behind = far_behind * std::max(1.0, headline_error / error);
+    chosen.far_behind = far_behind * std::max(1.0, headline_error / wish.error);
     SweepSpec& sweep = chosen.sweeps.emplace_back();
     sweep.sweep = "strain";
     sweep.refine = false;  // the time is better spent on other contestants
@@ -203,7 +203,7 @@ struct Choose : SceneOptions {
     sweep.limits = {limit};
     sweep.scene_parameters = complete_parameters();
     sweep.resolutions = {static_cast<int>(sweep.scene_parameters.at(type->resolution))};
-    sweep.coarsest = 1 / frames_per_second;
+    sweep.coarsest = 1 / wish.rate;
     sweep.finest = sweep.coarsest / finest_part;
     sweep.contestants = contestants_for(solver, *type, sweep.scene_parameters);
     tune(sweep.contestants, read_tuned_up_to_date("tuned.json"), type->kind());
@@ -211,9 +211,9 @@ struct Choose : SceneOptions {
   }
 
   int run() {
-    if (std::ranges::count(frame_rates, frames_per_second) == 0)
-      throw UsageError("--fps is " + number_text(frames_per_second) + ", must be 24, 30 or 60");
-    Wish wish{error, frames_per_second, 1e-3 * budget};
+    if (std::ranges::count(frame_rates, wish.rate) == 0)
+      throw UsageError("--fps is " + number_text(wish.rate) + ", must be 24, 30 or 60");
+    wish.budget *= 1e-3;
     const Suite tried = suite();
     const TimingLock lock(!no_wait);
     const auto begin = Clock::now();

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 
 #include "harness/analysis/measured_point.h"
@@ -21,12 +21,9 @@ constexpr int still_samples = 6, film_samples = 3;
 
 using analysis::percent;
 
-using Writer = std::vector<std::string> (*)(const Recording&, const FilmRun&, const std::string&,
-                                            const std::string&);
-// Formats by file ending, with the writer of files for other programs; null: pictures.
-const std::map<std::string, Writer> formats{{".webp", nullptr},  {".mp4", nullptr},
-                                            {".png", nullptr},   {".obj", write_obj},
-                                            {".pvd", write_vtk}, {".pc2", write_pc2}};
+// File endings of pictures and films, and of files for other programs.
+const std::set<std::string> picture_endings{".webp", ".mp4", ".png"},
+    mesh_endings{".obj", ".pvd", ".pc2"};
 
 std::string name_of(const FilmRun& run, const std::string& solver) {
   return solver + ", " + percent(run.strain_limit) + ", steps of " + step_text(run.step) + " s";
@@ -52,22 +49,21 @@ void print_times(const Recording& recording) {
 
 struct Film : SceneOptions {
   std::string solver = "fast_projection", out;
-  Numbers limits{0.01}, stills;
-  double step = FilmSpec{}.step;  // s
-  double frames_per_second = 30;
+  FilmSpec film;
+  Numbers stills;
   int width = 0;  // pixels; 0: not given
 
   void declare(const Command& command) {
     scene = "drape";
     SceneOptions::declare(command, scene);
     add_solver(command, solver);
-    add_limits(command, limits, "0.01");
-    command.option("--step", step, "s; shortened to a whole part of a frame; default: 0.01", "S",
-                   Bounds::positive());
-    command.option("--fps", frames_per_second, "frames a second", "N", Bounds::positive());
+    add_limits(command, film.strain_limits, "0.01");
+    command.option("--step", film.step, "s; shortened to a whole part of a frame; default: 0.01",
+                   "S", Bounds::positive());
+    command.option("--fps", film.frames_per_second, "frames a second", "N", Bounds::positive());
     command.option("--stills", stills,
                    "times of the pictures in a .png, s, between commas; default: four", "TIME",
-                   Bounds::at_least(0));
+                   {.least = 0});
     command.option("--width", width, "of each picture; default: 480", "PIXELS",
                    {.least = 16, .most = 4096, .whole = true});
     command.option("--out", out,
@@ -76,8 +72,7 @@ struct Film : SceneOptions {
                    "FILE");
   }
 
-  FilmSpec spec() const {
-    FilmSpec film;
+  void complete_film() {
     film.scene = name();
     film.parameters = complete_parameters();
     const auto wanted = solver_pattern(solver);
@@ -85,14 +80,10 @@ struct Film : SceneOptions {
       if (wanted->matches(backend.name)) film.solvers.push_back({backend.name, backend.name});
     }
     tune(film.solvers, read_tuned_up_to_date("tuned.json"), find_scene(film.scene)->kind());
-    film.strain_limits = limits;
-    film.step = step;
-    film.frames_per_second = frames_per_second;
-    return film;
   }
 
   // The frames drawn: all for a film; for stills those nearest to the given times, or four.
-  std::vector<std::size_t> shown_frames(const FilmSpec& film, bool still) const {
+  std::vector<std::size_t> shown_frames(bool still) const {
     const std::size_t last = frames_in(film) - 1;
     std::vector<std::size_t> frames(last + 1);
     std::iota(frames.begin(), frames.end(), std::size_t{0});
@@ -110,21 +101,21 @@ struct Film : SceneOptions {
   }
 
   void check_format(const std::string& ending) const {
-    const auto format = formats.find(ending);
-    if (format == formats.end())
+    if (!picture_endings.contains(ending) && !mesh_endings.contains(ending))
       throw UsageError("--out '" + out +
                        "': must end in .webp, .mp4, .png (stills), .obj, .pvd (ParaView) or .pc2 "
                        "(Blender)");
     if (!stills.empty() && ending != ".png")
       throw UsageError("--stills: --out '" + out + "' must end in .png");
-    if (width > 0 && format->second) throw UsageError("--width: '" + out + "' has no pictures");
+    if (width > 0 && mesh_endings.contains(ending))
+      throw UsageError("--width: '" + out + "' has no pictures");
   }
 
   // Impossible scene parameters, or a method that cannot run the scene, are the user's mistake.
-  static Recording recorded(const FilmSpec& film) {
+  Recording recorded() const {
     Progress progress;
     try {
-      return record(film, interrupted, [&](const FilmRun& run) {
+      return record(film, [&](const FilmRun& run) {
         if (run.frames.size() == 1) progress.begin_part();
         progress.show(run.frames.size(), frames_in(film), name_of(run, run.label));
       });
@@ -141,14 +132,13 @@ struct Film : SceneOptions {
     write_pictures(
         folder.path(), recording,
         {frames, width > 0 ? width : default_width, still ? still_samples : film_samples},
-        interrupted,
         [&progress](std::size_t done, std::size_t all) { progress.show(done, all, "pictures"); });
     progress.clear();
     return draw("film.py", {folder.path()}, out);
   }
 
   int run() {
-    const FilmSpec film = spec();
+    complete_film();
     if (out.empty())
       out = default_output("film-" + scene.substr(0, scene.find(':')),
                            stills.empty() ? ".webp" : ".png");
@@ -156,18 +146,17 @@ struct Film : SceneOptions {
     const std::string ending = place.extension().string();
     check_format(ending);
     const bool still = ending == ".png";
-    const auto frames = shown_frames(film, still);  // before anything runs
+    const auto frames = shown_frames(still);  // before anything runs
     check_writable(out);
-    const Recording recording = recorded(film);
+    const Recording recording = recorded();
     print_times(recording);
-    const Writer writer = formats.at(ending);
-    if (!writer) return draw_pictures(recording, frames, still);
+    if (picture_endings.contains(ending)) return draw_pictures(recording, frames, still);
     const std::string folder = place.has_parent_path() ? place.parent_path().string() : ".";
     for (const FilmRun& run : recording.takes) {
       const std::string own_part =
           recording.takes.size() == 1 ? "" : "-" + run.solver + "-" + number_text(run.strain_limit);
       for (const std::string& path :
-           writer(recording, run, folder, place.stem().string() + own_part))
+           write_run(recording, run, folder, place.stem().string() + own_part, ending))
         std::cout << path << '\n';
     }
     return success;

@@ -58,28 +58,26 @@ std::vector<PointSpec> read_specs(std::istream& in) {
 
 struct PointVerb {
   int samples = 1;
-  double timeout = 60;  // s
+  RunLimits limits;
 
   void declare(const Command& command) {
     command.option("--samples", samples, "runs of each, the first one judged; default: 1", "N",
                    {.least = 1, .most = 1000000, .whole = true});
-    add_timeout(command, timeout, "60");
+    add_timeout(command, limits.timeout, "60");
   }
 
-  PointResult timed(const PointSpec& spec, const RunLimits& limits) const {
+  PointResult timed(const PointSpec& spec) const {
     const OutputToError no_output;  // a line printed by the solver would be read as a result
     PointResult point = run_point(spec, limits);
     for (int i = 1; i < samples && point.ok(); ++i) add_sample(point, run_point, limits);
     return point;
   }
 
-  int run() const {
-    RunLimits limits;
-    limits.timeout = timeout;
+  int run() {
     limits.references = ReferenceFolder::usual();
     const std::string fingerprint = counters_fingerprint();
     for (const PointSpec& spec : read_specs(std::cin)) {
-      json line = to_json(timed(spec, limits));
+      json line = to_json(timed(spec));
       line["counters_fingerprint"] = fingerprint;
       std::cout << compact(line) << std::endl;
     }

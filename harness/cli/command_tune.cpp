@@ -63,7 +63,7 @@ struct Tune {
   std::string solver, scene, out;
   Numbers n, limits;
   int trials = 0;  // 0: the rule's
-  double timeout = TuneOptions{}.timeout;
+  TuneOptions options;
   bool no_wait = false, again = false;
 
   void declare(const Command& command) {
@@ -78,7 +78,7 @@ struct Tune {
                    "sets of settings to try for each solver, size and limit; default: 10 for each "
                    "setting, at most 40",
                    "N", {.least = 4, .most = 10000, .whole = true});
-    add_timeout(command, timeout, "10");
+    add_timeout(command, options.timeout, "10");
     command.flag("--again", again, "also tune what is up to date");
     command.option("--out", out, "the settings; default: configs/tuned.json", "FILE");
     add_no_wait(command, no_wait);
@@ -104,14 +104,11 @@ struct Tune {
     return chosen;
   }
 
-  TuneOptions tuning() const {
-    TuneOptions options;
+  void complete_options() {
     if (trials > 0) options.budget = options.trials_each = trials;
-    options.timeout = timeout;
     options.interrupted = interrupted;
     if (own_places()) options.longest_run = std::numeric_limits<double>::infinity();
     options.tell = [](const std::string& line) { std::cerr << line << '\n'; };
-    return options;
   }
 
   // Stores the result in `entries`. False: its entry is up to date.
@@ -125,28 +122,29 @@ struct Tune {
       if (!there)
         throw UsageError(name + " has no settings by today's rule yet: bench tune --scene " +
                          on.scene + " --solver " + name);
-      const TunedEntry found = tune_solver(name, on, tuning(), run, &*known);
+      const TunedEntry found = tune_solver(name, on, options, run, &*known);
       print(found);
       add_places(*known, found.places);
       return true;
     }
     if (there && !again) return false;
-    TunedEntry entry = tune_solver(name, on, tuning(), run);
+    TunedEntry entry = tune_solver(name, on, options, run);
     const json machine = machine_context();
     const json& build = machine.at("build");
     entry.context = {{"date", machine.at("date")},
                      {"cpu_model", machine.at("cpu_model")},
                      {"commit", build.at("git")},
                      {"dirty", build.at("dirty")},
-                     {"timeout", timeout}};
+                     {"timeout", options.timeout}};
     print(entry);
     if (known != entries.end()) entries.erase(known);
     entries.push_back(std::move(entry));
     return true;
   }
 
-  int run() const {
+  int run() {
     const std::vector<SweepSpec> chosen = scenes();
+    complete_options();
     (void)solver_pattern(solver);
     if (std::ranges::all_of(
             chosen, [this](const SweepSpec& s) { return chosen_solvers(solver, s).empty(); }))

@@ -158,15 +158,11 @@ void cut_ladders(Suite& suite, double finest) {
   }
 }
 
-bool is(const json& sweep, const char* key, const std::string& value) {
-  return sweep.is_object() && sweep.value(key, json()) == value;
-}
-
 // A scene missing from the suite gets a copy of the first sweep of that kind, at its default size.
 void put_in_scene(json& sweeps, const SweepOptions& options) {
-  const auto of_kind = [&](const json& s) { return is(s, "sweep", options.sweep); };
+  const auto of_kind = [&](const json& s) { return s["sweep"] == options.sweep; };
   if (options.scene.empty() || std::ranges::any_of(sweeps, [&](const json& s) {
-        return of_kind(s) && is(s, "scene", options.scene);
+        return of_kind(s) && s["scene"] == options.scene;
       }))
     return;
   const auto first = std::ranges::find_if(sweeps, of_kind);
@@ -180,19 +176,16 @@ void put_in_scene(json& sweeps, const SweepOptions& options) {
   sweeps.push_back(std::move(sweep));
 }
 
-// The suite as the options change it, checked like any other.
+// The suite as the options change it.
 Suite edited_suite(const std::string& path, const SweepOptions& options) {
-  const std::string text = read_file(path, "suite");
   const SceneParameters given = options.given_parameters();
   if (!given.empty() && options.scene.empty()) throw UsageError("--set goes with --scene");
-  json document = parse_document(text, path);
-  if (!document.is_object() || !document.contains("sweeps") || !document["sweeps"].is_array())
-    return parse_suite(text, path);  // which reports what is wrong
+  json document = suite_document(read_file(path, "suite"), path);
   json& sweeps = document["sweeps"];
   put_in_scene(sweeps, options);
   for (json& sweep : sweeps) {
-    if (!is(sweep, "sweep", options.sweep)) continue;
-    if (is(sweep, "scene", options.scene)) {
+    if (sweep["sweep"] != options.sweep) continue;
+    if (sweep["scene"] == options.scene) {
       for (const auto& [name, value] : given) sweep["scene_parameters"][name] = value;
     }
     if (!options.limits.empty()) {
@@ -204,12 +197,12 @@ Suite edited_suite(const std::string& path, const SweepOptions& options) {
     if (options.n.empty()) continue;
     if (options.sweep != "resolution" && options.n.size() > 1)
       throw UsageError("--n: a " + options.sweep + " sweep has one size");
-    const auto type = find_scene(sweep.value("scene", ""));
+    const auto type = find_scene(sweep["scene"].get<std::string>());
     if (type && sweep.contains("scene_parameters"))
       sweep["scene_parameters"].erase(type->resolution);
     sweep["resolutions"] = options.n;
   }
-  return parse_suite(document.dump(), path);
+  return suite_of(document, path);
 }
 
 }  // namespace

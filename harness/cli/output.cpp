@@ -35,6 +35,19 @@ bool exists(const std::string& path) {
   return fs::exists(path, error);
 }
 
+// What must agree for one run to go on where another stopped. context: machine_context(), and in
+// "selection" the options that choose points.
+json identity(const json& context, const json& suite) {
+  const json& build = context.at("build");
+  return {{"processor", context.at("cpu_model")},
+          {"compiler", build.at("compiler")},
+          {"compiler flags", build.at("flags")},
+          {"program", build.value("binary", build.at("git").get<std::string>())},
+          {"libraries", context.at("libraries")},
+          {"suite", suite},
+          {"selection", context.value("selection", json::object())}};
+}
+
 void check_same(const OutputOptions& options, const std::string& path, const json& was,
                 const json& mine) {
   const std::string what = was.is_null() || options.force ? "" : difference(was, mine);
@@ -47,10 +60,7 @@ void check_same(const OutputOptions& options, const std::string& path, const jso
 // and the journal is untouched.
 std::optional<json> begin_journal(const OutputOptions& options, const std::string& out,
                                   Journal& journal, const Undertaking& run) {
-  const auto identity_of = [](const json& context, const json& suite) {
-    return identity(context, suite, context.value("selection", json::object()));
-  };
-  const json mine = identity_of(run.context, run.suite);
+  const json mine = identity(run.context, run.suite);
   const bool again = options.resume || options.rerun_failed;
   const json header = {
       {"schema", "inextensible-journal/2"}, {"identity", mine}, {"context", run.context}};
@@ -74,7 +84,7 @@ std::optional<json> begin_journal(const OutputOptions& options, const std::strin
     if (!result.contains(run.rows))
       throw UsageError("'" + out + "' is the result of another kind of sweep: nothing to resume");
     const json& context = result.at("context");
-    check_same(options, out, identity_of(context, context.value("suite", json())), mine);
+    check_same(options, out, identity(context, context.value("suite", json())), mine);
     if (result.at("complete").get<bool>() && !options.rerun_failed) return std::nullopt;
     journal.start(header);
     run.add(result, journal);

@@ -1,7 +1,6 @@
 // Reads gates, results and baselines; writes baselines.
 #include "harness/base/files.h"
 
-#include <algorithm>
 #include <array>
 
 #include "harness/base/errors.h"
@@ -84,37 +83,24 @@ void add_file(ComparedResult& to, const json& document, const std::string& path)
 Gate read_gate(const std::string& path) { return parse_gate(read_file(path, "gate"), path); }
 
 Gate parse_gate(const std::string& text, const std::string& path) {
-  const json document = parse_document(text, path), nothing = json::object();
-  JsonReader reader(document, "gate '" + path + "'");
-  const auto part = [&](const char* key) {
-    const json* value = reader.find(key);
-    return JsonReader(value ? *value : nothing, reader.where(key));
-  };
+  const json document = parse_document(text, path);
+  check_schema(document, "gate", path);
+  const auto part = [&document](const char* key) { return document.value(key, json::object()); };
+  const json times = part("times"), counters = part("counters"), errors = part("errors");
+  const std::map<std::string, CounterRule> rules{
+      {"exact", CounterRule::exact}, {"rise", CounterRule::rise}, {"inform", CounterRule::inform}};
   Gate gate;
-  JsonReader times = part("times");
-  gate.times = times.flag("count", gate.times);
-  gate.significance =
-      times.number("significance", gate.significance, {.least = 0, .above = true, .most = 0.5});
-  gate.median_ratio = times.number("median_ratio", gate.median_ratio, Bounds::at_least(1));
-  gate.minimum_ratio = times.number("minimum_ratio", gate.minimum_ratio, Bounds::at_least(1));
-  times.finish();
-  JsonReader counters = part("counters");
-  const std::vector<std::string> rules{"exact", "rise", "inform"};  // as CounterRule has them
-  const std::string rule = counters.text("rule", "exact");
-  check_known("rule", rule, rules, counters.where("rule"));
-  gate.counter_rule = static_cast<CounterRule>(std::ranges::find(rules, rule) - rules.begin());
-  gate.counters = counters.texts("names");
-  for (const std::string& name : gate.counters)
-    check_known("counter", name, counter_names(), counters.where("names"));
-  counters.finish();
-  JsonReader errors = part("errors");
-  if (reader.find("errors")) gate.errors.clear();
+  gate.times = times.value("count", gate.times);
+  gate.significance = times.value("significance", gate.significance);
+  gate.median_ratio = times.value("median_ratio", gate.median_ratio);
+  gate.minimum_ratio = times.value("minimum_ratio", gate.minimum_ratio);
+  gate.counter_rule = rules.at(counters.value("rule", "exact"));
+  gate.counters = counters.value("names", gate.counters);
+  if (document.contains("errors")) gate.errors.clear();
   for (const char* name : {"max_strain", "trajectory", "energy_drift"}) {
-    if (errors.find(name)) gate.errors[name] = errors.number(name, 1, Bounds::at_least(1));
+    if (errors.contains(name)) gate.errors[name] = errors.at(name);
   }
-  gate.error_floor = errors.number("floor", gate.error_floor, Bounds::at_least(0));
-  errors.finish();
-  reader.finish();
+  gate.error_floor = errors.value("floor", gate.error_floor);
   return gate;
 }
 

@@ -123,48 +123,50 @@ std::string pc2_bytes(const Part& part, std::size_t frames) {
 }
 
 // Writes one file a frame, or one for a body that does not move; returns their paths.
-std::vector<std::string> write_frames(const std::vector<Part>& parts, const FilmRun& take,
+std::vector<std::string> write_frames(const std::vector<Part>& parts, std::size_t frames,
                                       const std::string& folder, const char* extension,
                                       std::string (*text)(const Part&,
                                                           const inextensible::Positions&)) {
   std::vector<std::string> paths;
   for (const Part& part : parts) {
-    for (std::size_t i = 0; i < (part.stays ? 1 : take.frames.size()); ++i)
+    for (std::size_t i = 0; i < (part.stays ? 1 : frames); ++i)
       paths.push_back(written(folder + "/" + part.file(i, extension), text(part, part.at(i))));
   }
   return paths;
 }
 
-}  // namespace
-
-std::vector<std::string> write_obj(const Recording& recording, const FilmRun& take,
-                                   const std::string& folder, const std::string& name) {
-  return write_frames(parts_of(recording, take, name), take, folder, ".obj", obj_text);
-}
-
-std::vector<std::string> write_vtk(const Recording& recording, const FilmRun& take,
-                                   const std::string& folder, const std::string& name) {
-  const std::vector<Part> parts = parts_of(recording, take, name);
-  write_frames(parts, take, folder, ".vtp", vtp_text);
+// Plays the files of the frames.
+std::string pvd_text(const std::vector<Part>& parts, std::size_t frames, double rate) {
   std::ostringstream play;
   play << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
           "byte_order=\"LittleEndian\">\n<Collection>\n";
-  for (std::size_t i = 0; i < take.frames.size(); ++i) {
+  for (std::size_t i = 0; i < frames; ++i) {
     for (std::size_t p = 0; p < parts.size(); ++p)
-      play << "<DataSet timestep=\"" << static_cast<double>(i) / recording.spec.frames_per_second
-           << "\" part=\"" << p << "\" file=\"" << parts[p].file(i, ".vtp") << "\"/>\n";
+      play << "<DataSet timestep=\"" << static_cast<double>(i) / rate << "\" part=\"" << p
+           << "\" file=\"" << parts[p].file(i, ".vtp") << "\"/>\n";
   }
   play << "</Collection>\n</VTKFile>\n";
-  return {written(folder + "/" + name + ".pvd", play.str())};
+  return play.str();
 }
 
-std::vector<std::string> write_pc2(const Recording& recording, const FilmRun& take,
-                                   const std::string& folder, const std::string& name) {
-  std::vector<std::string> paths;
-  for (const Part& part : parts_of(recording, take, name)) {
+}  // namespace
+
+std::vector<std::string> write_run(const Recording& recording, const FilmRun& take,
+                                   const std::string& folder, const std::string& name,
+                                   const std::string& ending) {
+  const std::vector<Part> parts = parts_of(recording, take, name);
+  const std::size_t frames = take.frames.size();
+  if (ending == ".obj") return write_frames(parts, frames, folder, ".obj", obj_text);
+  if (ending == ".pvd") {
+    write_frames(parts, frames, folder, ".vtp", vtp_text);
+    return {written(folder + "/" + name + ".pvd",
+                    pvd_text(parts, frames, recording.spec.frames_per_second))};
+  }
+  std::vector<std::string> paths;  // .pc2
+  for (const Part& part : parts) {
     const std::string path = folder + "/" + part.name;
     paths.push_back(written(path + ".obj", obj_text(part, part.at(0))));
-    if (!part.stays) paths.push_back(written(path + ".pc2", pc2_bytes(part, take.frames.size())));
+    if (!part.stays) paths.push_back(written(path + ".pc2", pc2_bytes(part, frames)));
   }
   return paths;
 }

@@ -22,8 +22,8 @@ struct FilmSpec {
   std::string scene;
   SceneParameters parameters;  // complete
   Contestants solvers;
-  std::vector<double> strain_limits;  // every solver runs at each of them
-  double step = 0.01;                 // s; shortened to a whole part of a frame
+  std::vector<double> strain_limits{0.01};  // every solver runs at each of them
+  double step = 0.01;                       // s; shortened to a whole part of a frame
   double frames_per_second = 30;
 };
 
@@ -53,8 +53,7 @@ std::size_t frames_in(const FilmSpec& spec);
 
 // Springs get the stiffness that keeps the limit. told is called after every frame. Throws
 // Interrupted.
-Recording record(const FilmSpec& spec, const std::function<bool()>& interrupted,
-                 const std::function<void(const FilmRun&)>& told);
+Recording record(const FilmSpec& spec, const std::function<void(const FilmRun&)>& told);
 
 // The body's vertices at a frame.
 inextensible::Positions body_at(const Recording& recording, std::size_t frame);
@@ -122,25 +121,17 @@ Shot shot_of(const Recording& recording, const View& view, std::size_t take, std
 // existing folder, using all cores, and film.json, which plots/film.py reads. Throws FileError,
 // Interrupted.
 void write_pictures(const std::string& folder, const Recording& recording, const PictureSpec& spec,
-                    const std::function<bool()>& interrupted,
                     const std::function<void(std::size_t done, std::size_t all)>& told);
 
 // ---- for other programs (exports.cpp) ----
 
-// Each function writes a run into an existing folder and returns the paths to open. A body has
-// files of its own, <name>-body...: one if it does not move, else as many as the cloth.
-
-// Wavefront OBJ, one file a frame (<name>-0001.obj ...), with faces for cloth and lines for chains.
-std::vector<std::string> write_obj(const Recording& recording, const FilmRun& take,
-                                   const std::string& folder, const std::string& name);
-
-// VTK XML for ParaView: a .vtp a frame with every edge's strain as a field, and a .pvd that plays
-// them.
-std::vector<std::string> write_vtk(const Recording& recording, const FilmRun& take,
-                                   const std::string& folder, const std::string& name);
-
-// The first frame as OBJ, and a point cache (PC2) for Blender's modifier "Mesh Cache".
-std::vector<std::string> write_pc2(const Recording& recording, const FilmRun& take,
-                                   const std::string& folder, const std::string& name);
+// Writes a run into an existing folder and returns the paths to open. By the ending:
+//   .obj  Wavefront OBJ, one file a frame (<name>-0001.obj ...), faces for cloth, lines for chains
+//   .pvd  VTK XML for ParaView: a .vtp a frame with every edge's strain, and a .pvd that plays them
+//   .pc2  the first frame as OBJ, and a point cache for Blender's modifier "Mesh Cache"
+// A body has files of its own, <name>-body...: one if it does not move, else as many as the cloth.
+std::vector<std::string> write_run(const Recording& recording, const FilmRun& take,
+                                   const std::string& folder, const std::string& name,
+                                   const std::string& ending);
 
 }  // namespace harness

@@ -122,7 +122,6 @@ Shot shot_of(const Recording& recording, const View& view, std::size_t take, std
 }
 
 void write_pictures(const std::string& folder, const Recording& recording, const PictureSpec& spec,
-                    const std::function<bool()>& interrupted,
                     const std::function<void(std::size_t, std::size_t)>& told) {
   const View view = view_of(recording, spec.frames);
   std::set<std::pair<std::size_t, std::size_t>> distinct;  // take and frame

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "harness/base/clock.h"
+#include "harness/base/interrupt.h"
 #include "harness/base/text.h"
 #include "harness/film/film.h"
 #include "harness/judge/drive.h"
@@ -17,7 +18,7 @@ using inextensible::State;
 
 // The settings given, and for springs the stiffness that a sweep would find.
 inextensible::Settings calibrated(const FilmSpec& spec, const Contestant& contestant, double limit,
-                                  double step, const std::function<bool()>& interrupted) {
+                                  double step) {
   const inextensible::Backend& backend = *inextensible::find_backend(contestant.solver);
   const int size = static_cast<int>(spec.parameters.at(find_scene(spec.scene)->resolution));
   inextensible::Settings settings = contestant.settings_for(size, limit);
@@ -59,7 +60,6 @@ std::string gave_up(double time, const std::string& why) {
 
 FilmRun take_of(const FilmSpec& spec, const Scene& scene, double energy_bound,
                 const Contestant& contestant, double limit,
-                const std::function<bool()>& interrupted,
                 const std::function<void(const FilmRun&)>& told) {
   const double rate = spec.frames_per_second;
   FilmRun take;
@@ -69,7 +69,7 @@ FilmRun take_of(const FilmSpec& spec, const Scene& scene, double energy_bound,
   const int steps_per_frame =
       std::max(1, static_cast<int>(std::ceil(1 / (rate * spec.step) - 1e-9)));
   take.step = take.smallest_step = 1 / (rate * steps_per_frame);
-  const auto settings = calibrated(spec, contestant, limit, take.step, interrupted);
+  const auto settings = calibrated(spec, contestant, limit, take.step);
   const inextensible::Backend& backend = *inextensible::find_backend(contestant.solver);
   State state = start_of(scene, backend, take.step);
   const auto stepper =
@@ -147,8 +147,7 @@ std::size_t frames_in(const FilmSpec& spec) {
                  std::floor(spec.parameters.at("duration") * spec.frames_per_second + 1e-9));
 }
 
-Recording record(const FilmSpec& spec, const std::function<bool()>& interrupted,
-                 const std::function<void(const FilmRun&)>& told) {
+Recording record(const FilmSpec& spec, const std::function<void(const FilmRun&)>& told) {
   Recording recording{spec, find_scene(spec.scene)->build(spec.parameters), {}, {}, {}};
   const Scene& scene = recording.scene;
   const auto* body = dynamic_cast<const inextensible::TriangleCollider*>(scene.problem->collider());
@@ -161,8 +160,7 @@ Recording record(const FilmSpec& spec, const std::function<bool()>& interrupted,
   const double energy_bound = energy_bound_of(recording);
   for (const double limit : spec.strain_limits) {
     for (const Contestant& contestant : spec.solvers)
-      recording.takes.push_back(
-          take_of(spec, scene, energy_bound, contestant, limit, interrupted, told));
+      recording.takes.push_back(take_of(spec, scene, energy_bound, contestant, limit, told));
   }
   return recording;
 }

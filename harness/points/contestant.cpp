@@ -15,23 +15,6 @@ namespace {
 
 using nlohmann::json;
 
-std::vector<SettingsAt> read_settings_at(const json& places, const std::string& where,
-                                         const inextensible::Backend& backend) {
-  if (!places.is_array()) throw UsageError(where + " must be a list");
-  std::vector<SettingsAt> all;
-  for (const json& place : places) {
-    JsonReader reader(place, where);
-    SettingsAt& at = all.emplace_back();
-    at.resolution =
-        static_cast<int>(reader.number("resolution", 0, {.least = 1, .most = 1e6, .whole = true}));
-    at.limit = reader.number("limit", 0, Bounds::strain());
-    if (const json* settings = reader.find("settings"))
-      at.settings = read_settings(*settings, where, backend);
-    reader.finish();
-  }
-  return all;
-}
-
 // Building takes a while where there is a body, and suites ask for one scene again and again.
 const inextensible::Problem& small_problem(const SceneType& type, const SceneParameters& given) {
   constexpr double enough = 11;  // the same parts as at any size
@@ -47,25 +30,20 @@ const inextensible::Problem& small_problem(const SceneType& type, const ScenePar
 
 Contestant read_contestant(const json& given, const std::string& where) {
   const json entry = given.is_string() ? json::object({{"name", given}}) : given;
-  if (!entry.is_object())
-    throw UsageError(where + " is " + value_text(entry) +
-                     ", must be solvers' names, or objects such as {\"name\": \"icd_loose\", "
-                     "\"solver\": \"icd\", \"settings\": {}}");
-  JsonReader reader(entry, where);
   Contestant contestant;
-  contestant.name = reader.text("name", "");
-  contestant.solver = reader.text("solver", contestant.name);
+  contestant.name = entry.value("name", "");
+  contestant.solver = entry.value("solver", contestant.name);
   const auto& backend = checked_backend(contestant.solver, where);
   if (contestant.name == contestant.solver) contestant.name = backend.name;
   contestant.solver = backend.name;
   if (contestant.name.empty()) contestant.name = contestant.solver;
-  if (const json* settings = reader.find("settings"))
-    contestant.settings = read_settings(*settings, where + ": 'settings'", backend);
-  if (const json* places = reader.find("settings_at"))
-    contestant.settings_at = read_settings_at(*places, where + ": 'settings_at'", backend);
-  contestant.label = reader.text("label", "");
-  contestant.unranked = reader.flag("unranked", false);
-  reader.finish();
+  contestant.settings = entry.value("settings", contestant.settings);
+  check_settings(contestant.settings, where + ": 'settings'", backend);
+  contestant.settings_at = entry.value("settings_at", contestant.settings_at);
+  for (const SettingsAt& at : contestant.settings_at)
+    check_settings(at.settings, where + ": 'settings_at'", backend);
+  contestant.label = entry.value("label", "");
+  contestant.unranked = entry.value("unranked", false);
   check_plain_name(contestant.name, where + ": 'name'");
   if (!contestant.own_name() && inextensible::find_backend(contestant.name))
     throw UsageError(where + ": 'name' is \"" + contestant.name +
@@ -112,20 +90,6 @@ bool matches(const Pattern& pattern, const std::string& solver) {
   return backend && pattern.matches(std::string(backend->method) + "@" + backend->stepper);
 }
 
-inextensible::Settings read_settings(const json& object, const std::string& where,
-                                     const inextensible::Backend& backend) {
-  if (!object.is_object()) throw UsageError(where + ": must be an object { ... }");
-  inextensible::Settings settings;
-  for (const auto& [key, value] : object.items()) {
-    if (!value.is_number() && !value.is_string())
-      throw UsageError(where + ": '" + key + "' is " + value_text(value) +
-                       ", must be a number or a text");
-    value.get_to(settings[key]);
-  }
-  check_settings(settings, where, backend);
-  return settings;
-}
-
 void check_settings(const inextensible::Settings& settings, const std::string& where,
                     const inextensible::Backend& backend) {
   const std::string kind = "setting of solver " + std::string(backend.name);
@@ -169,8 +133,6 @@ Contestants competitors(const SceneType& type, const SceneParameters& given) {
 }
 
 Contestants read_contestants(const json& solvers, const std::string& where) {
-  if (!solvers.is_array() || solvers.empty())
-    throw UsageError(where + " must be a list of solvers");
   Contestants all;
   for (const json& entry : solvers) {
     Contestant contestant = read_contestant(entry, where);

@@ -15,7 +15,7 @@
 
 namespace harness {
 
-// Settings for scenes of about this size and strain limit.
+// Settings for scenes near this size and strain limit.
 struct SettingsAt {
   int resolution = 1;
   double limit = 0.01;
@@ -30,7 +30,7 @@ struct Contestant {
   inextensible::Settings settings = {};  // given ones only
   std::string label = "";                // in figures; empty: the solver's, or the name in words
   bool unranked = false;                 // beside the ranking, drawn with hollow marks
-  // Further settings, of which those of the nearest place hold (by the ratios of sizes and limits).
+  // Further settings; those of the nearest place apply (by the ratios of sizes and limits).
   std::vector<SettingsAt> settings_at = {};
 
   inextensible::Settings settings_for(int resolution, double limit) const;
@@ -44,13 +44,11 @@ Contestants::iterator find_contestant(Contestants& all, const std::string& name)
 std::string label_of(const Contestant& contestant);
 
 // A list of "icd", or {"name": "icd_loose", "solver": "icd", "settings": {...}, "label": "...",
-// "unranked": true}. All throw UsageError, naming `where`, key and value.
+// "unranked": true}, as in a suite that fits its schema. All throw UsageError, naming `where`.
 Contestants read_contestants(const nlohmann::json& solvers, const std::string& where);
-// The solvers of suites that name none: all that compete and take every part of the scene, on a
-// chain without those that are another one there.
+// The solvers of a suite that names none: all that compete and support every part of the scene. On
+// a chain, a solver that coincides with another one there is left out.
 Contestants competitors(const SceneType& type, const SceneParameters& given);
-inextensible::Settings read_settings(const nlohmann::json& object, const std::string& where,
-                                     const inextensible::Backend& backend);
 // Throws unless the solver accepts them.
 void check_settings(const inextensible::Settings& settings, const std::string& where,
                     const inextensible::Backend& backend);
@@ -60,10 +58,10 @@ const inextensible::Backend& checked_backend(const std::string& name, const std:
 // where: may be empty.
 std::shared_ptr<const SceneType> checked_scene(const std::string& name,
                                                const std::string& where = "");
-// A pair that makes no sense gets its reason, any other name a suggestion.
+// Gives the reason for a pair that makes no sense, and a suggestion for any other name.
 UsageError no_solver(const std::string& name, const std::vector<std::string>& known);
-// Whether the pattern matches this contestant's or solver's name, or that with its published
-// stepper.
+// Whether the pattern matches the name of this contestant or solver, with its published stepper
+// appended or not.
 bool matches(const Pattern& pattern, const std::string& solver);
 
 // read_contestants() reads it back.

@@ -147,17 +147,6 @@ json machine_context() {
   return context;
 }
 
-json identity(const json& build_context, const json& suite, const json& selection) {
-  const json& build = build_context.at("build");
-  return {{"processor", build_context.at("cpu_model")},
-          {"compiler", build.at("compiler")},
-          {"compiler flags", build.at("flags")},
-          {"program", build.value("binary", build.at("git").get<std::string>())},
-          {"libraries", build_context.at("libraries")},
-          {"suite", suite},
-          {"selection", selection}};
-}
-
 std::string difference(const json& was, const json& is) {
   const json patch = json::diff(was, is);
   if (patch.empty()) return "";

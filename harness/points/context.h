@@ -21,10 +21,6 @@ void use_one_thread();
 
 const char* version();
 
-// What must agree for one run to go on where another stopped. build_context: machine_context();
-// selection: options that choose points.
-nlohmann::json identity(const nlohmann::json& build_context, const nlohmann::json& suite,
-                        const nlohmann::json& selection);
 // The first difference, in words: "compiler is 'GNU 13', was 'GNU 12'"; "" if there is none.
 std::string difference(const nlohmann::json& was, const nlohmann::json& is);
 

@@ -84,8 +84,8 @@ struct PointSpec {
   bool adaptive = false;  // `step` is the largest one of a step controller
   std::uint64_t seed = 1;
 
-  std::string id()
-      const;  // drape/fast_projection/n:5041/strain:0.01/h:0.004 (adaptive: /h:adaptive)
+  // drape/fast_projection/n:5041/strain:0.01/h:0.004 (adaptive: /h:adaptive)
+  std::string id() const;
 };
 
 // Frames a second of film, television and games.

@@ -10,6 +10,7 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
+#include "harness/base/json.h"
 #include "harness/base/text.h"
 #include "harness/points/point_json.h"
 #include "harness/points/suite.h"
@@ -149,13 +150,21 @@ void check_schema(const json& document, const std::string& schema, const std::st
   if (valijson::Validator().validate(parsed, adapter, &results)) return;
   // The errors come from the inside out: the first one is the place itself.
   valijson::ValidationResults::Error error;
-  std::string place, what = "does not fit its schema";
-  if (results.popError(error)) {
-    for (const std::string& step : error.context) place += step == "<root>" ? "" : step;
-    what = error.description;
+  results.popError(error);
+  std::string place;
+  json::json_pointer pointer;
+  for (const std::string& step : error.context) {
+    if (step == "<root>") continue;
+    place += step;
+    pointer /= step.substr(1, step.size() - 2);  // [key] or [index]
   }
+  const bool known = document.contains(pointer) && document.at(pointer).is_primitive();
+  std::string what = error.description;
+  if (what.starts_with("Object contains a property"))
+    what = "unknown key " + what.substr(what.rfind(": '") + 2);
   throw UsageError("'" + path + "' is not a " + schema + " file: at " +
-                   (place.empty() ? "its top" : shortened(place, 100)) + ": " +
+                   (place.empty() ? "its top" : shortened(place, 100)) +
+                   (known ? ", " + value_text(document.at(pointer)) : "") + ": " +
                    shortened(what, 200));
 }
 

@@ -9,6 +9,7 @@
 #include "harness/base/pattern.h"
 #include "harness/base/text.h"
 #include "harness/points/point_json.h"
+#include "harness/points/schema.h"
 #include "harness/points/tuned.h"
 
 namespace harness {
@@ -16,60 +17,30 @@ namespace {
 
 using nlohmann::json;
 
-void read_limits(JsonReader& reader, const std::string& where, SweepSpec& spec) {
-  spec.limits = reader.numbers("limits", Bounds::strain());
-  if (const double limit = reader.number("limit", 0, Bounds::strain()); limit > 0) {
-    if (!spec.limits.empty()) throw UsageError(where + ": give 'limit' or 'limits', not both");
-    spec.limits = {limit};
-  }
-  if (spec.limits.empty())
-    throw UsageError(where + ": 'limits' is missing, for example \"limits\": [0.1, 0.01]");
+void read_limits(const json& object, const std::string& where, SweepSpec& spec) {
+  if (object.contains("limit") == object.contains("limits"))
+    throw UsageError(where + ": give 'limit' or 'limits', for example \"limits\": [0.1, 0.01]");
+  if (object.contains("limit"))
+    spec.limits = {object.at("limit").get<double>()};
+  else
+    object.at("limits").get_to(spec.limits);
 }
 
-void read_scene_parameters(JsonReader& reader, const SceneType& type, SweepSpec& spec) {
-  for (const double n : reader.numbers("resolutions", Bounds::whole_number(2)))
-    spec.resolutions.push_back(static_cast<int>(n));
-  if (const json* given = reader.find("scene_parameters")) {
-    JsonReader parameters(*given, reader.where("scene_parameters"));
-    for (const auto& entry : given->items())
-      spec.scene_parameters[entry.key()] = parameters.number(entry.key(), 0, {});
-  }
-  if (!spec.resolutions.empty()) return;
-  const SceneParameters complete = complete_parameters(type, spec.scene_parameters);
-  spec.resolutions = {static_cast<int>(complete.at(type.resolution))};
-}
-
-void read_steps(JsonReader& reader, const std::string& where, SweepSpec& spec) {
-  if (const json* steps = reader.find("steps")) {
-    JsonReader ladder(*steps, where + ": 'steps'");
-    const Bounds within_a_frame{.least = 0, .above = true, .most = longest_step * (1 + 1e-9)};
-    spec.coarsest = ladder.number("coarsest", spec.coarsest, within_a_frame);
-    spec.finest = ladder.number("finest", spec.finest, Bounds::positive());
-    spec.adaptive = ladder.flag("adaptive", spec.adaptive);
-    spec.every_step = ladder.flag("all", spec.every_step);
-    ladder.finish();
-    if (spec.finest > spec.coarsest)
-      throw UsageError(where + ": 'steps': 'finest' is larger than 'coarsest'");
-  }
+void read_steps(const json& steps, const std::string& where, SweepSpec& spec) {
+  spec.coarsest = steps.value("coarsest", spec.coarsest);
+  spec.finest = steps.value("finest", spec.finest);
+  spec.adaptive = steps.value("adaptive", spec.adaptive);
+  spec.every_step = steps.value("all", spec.every_step);
+  if (spec.finest > spec.coarsest)
+    throw UsageError(where + ": 'steps': 'finest' is larger than 'coarsest'");
   if (spec.adaptive && spec.sweep == "step")
     throw UsageError(where + ": a step sweep has fixed steps, so no 'adaptive' ones");
   if (spec.adaptive && spec.every_step)
     throw UsageError(where + ": 'steps': 'adaptive' and 'all' exclude each other");
 }
 
-void read_solver_options(JsonReader& reader, const std::string& where, SweepSpec& spec) {
-  const json* options = reader.find("solver_options");
-  if (!options) return;
-  if (!options->is_object()) reader.fail_at("solver_options", *options, "an object { ... }");
-  for (const auto& [name, value] : options->items()) {
-    const auto& backend = checked_backend(name, where + ": 'solver_options'");
-    spec.solver_options[name] = read_settings(value, where + ": 'solver_options'", backend);
-  }
-}
-
 // Impossible values are found before anything runs.
-void fit_steps_to_duration(const SceneType& type, bool coarsest_given, SweepSpec& spec) {
-  const double duration = complete_parameters(type, spec.scene_parameters).at("duration");
+void fit_steps_to_duration(double duration, bool coarsest_given, SweepSpec& spec) {
   if (!coarsest_given) spec.coarsest = std::min(spec.coarsest, duration);
   if (spec.coarsest > duration)
     throw UsageError("'duration' is " + number_text(duration) +
@@ -83,43 +54,48 @@ void fit_steps_to_duration(const SceneType& type, bool coarsest_given, SweepSpec
 
 SweepSpec read_sweep(const json& object, const std::string& where, const Tuned* tuned,
                      const std::string& same) {
-  JsonReader reader(object, where);
   SweepSpec spec;
-  spec.sweep = reader.text("sweep", "");
-  check_known("sweep", spec.sweep, sweep_kinds(), where);
-  spec.scene = reader.text("scene", "");
+  object.at("sweep").get_to(spec.sweep);
+  object.at("scene").get_to(spec.scene);
   const auto type = checked_scene(spec.scene, where);
-  const json* solvers = reader.find("solvers");
-  read_limits(reader, where, spec);
-  read_scene_parameters(reader, *type, spec);
-  read_steps(reader, where, spec);
-  read_solver_options(reader, where, spec);
-  const json* steps = reader.find("steps");
-  reader.finish();
+  read_limits(object, where, spec);
+  const json steps = object.value("steps", json::object());
+  read_steps(steps, where, spec);
+  spec.solver_options = object.value("solver_options", spec.solver_options);
+  for (const auto& [name, settings] : spec.solver_options) {
+    const std::string place = where + ": 'solver_options'";
+    check_settings(settings, place, checked_backend(name, place));
+  }
+  spec.resolutions = object.value("resolutions", spec.resolutions);
+  spec.scene_parameters = object.value("scene_parameters", spec.scene_parameters);
+  const bool solvers = object.contains("solvers");
   try {
-    fit_steps_to_duration(*type, steps && steps->contains("coarsest"), spec);
+    const SceneParameters complete = complete_parameters(*type, spec.scene_parameters);
+    if (spec.resolutions.empty())
+      spec.resolutions = {static_cast<int>(complete.at(type->resolution))};
+    fit_steps_to_duration(complete.at("duration"), steps.contains("coarsest"), spec);
     if (!solvers) spec.contestants = competitors(*type, spec.scene_parameters);
   } catch (const UsageError& error) {
     throw UsageError(where + ": 'scene_parameters': " + error.what());
   }
-  if (solvers) spec.contestants = read_contestants(*solvers, where + ": 'solvers'");
+  if (solvers) spec.contestants = read_contestants(object.at("solvers"), where + ": 'solvers'");
   if (tuned) tune(spec.contestants, *tuned, type->kind(), spec.solver_options);
   add_double(spec.contestants, same);
   return spec;
 }
 
 // One name is one solver, in all sweeps, for it has one place in the legend.
-void check_contestants(const Suite& suite, const JsonReader& reader) {
+void check_contestants(const Suite& suite, const std::string& where) {
   std::map<std::string, std::string> solvers;
   for (const SweepSpec& sweep : suite.sweeps) {
     for (const Contestant& c : sweep.contestants) {
       if (const auto [place, fresh] = solvers.emplace(c.name, c.solver); place->second != c.solver)
-        throw UsageError(reader.where("sweeps") + ": '" + c.name + "' is solver '" + place->second +
+        throw UsageError(where + ": '" + c.name + "' is solver '" + place->second +
                          "' in one sweep and '" + c.solver + "' in another");
     }
   }
   if (!suite.same.empty())
-    check_known("contestant", suite.same, names_of(contestants_of(suite)), reader.where("same"));
+    check_known("contestant", suite.same, names_of(contestants_of(suite)), where + ": 'same'");
 }
 
 }  // namespace
@@ -142,41 +118,45 @@ Contestants contestants_of(const Suite& suite) {
   return all;
 }
 
-Suite read_suite(const std::string& path) { return parse_suite(read_file(path, "suite"), path); }
+json suite_document(const std::string& text, const std::string& path) {
+  json document = parse_document(text, path);
+  check_schema(document, "suite", path);
+  return document;
+}
 
-Suite parse_suite(const std::string& text, const std::string& path) {
-  const json document = parse_document(text, path);
-  JsonReader reader(document, "suite '" + path + "'");
+Suite suite_of(const json& document, const std::string& path) {
+  const std::string where = "suite '" + path + "'";
   Suite suite;
-  suite.name = reader.text("name", "unnamed");
+  suite.name = document.value("name", "unnamed");
   if (!has_form(suite.name, "[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}"))
-    throw UsageError(reader.where("name") + " is " + value_text(suite.name) +
+    throw UsageError(where + ": 'name' is " + value_text(suite.name) +
                      ", must be letters, digits, _ . and - (results are named after it)");
-  suite.description = reader.text("description", "");
-  suite.profile = reader.text("profile", "custom");
-  suite.seed = static_cast<std::uint64_t>(reader.number("seed", 1, Bounds::exact_number()));
-  suite.reps = static_cast<int>(reader.number("reps", 3, Bounds::whole_number(1)));
-  suite.timeout = reader.number("timeout", 60, Bounds::positive());
-  suite.finest_error = reader.number("finest_error", suite.finest_error, Bounds::positive());
+  suite.description = document.value("description", "");
+  suite.profile = document.value("profile", "custom");
+  suite.seed = document.value("seed", suite.seed);
+  suite.reps = document.value("reps", suite.reps);
+  suite.timeout = document.value("timeout", suite.timeout);
+  suite.finest_error = document.value("finest_error", suite.finest_error);
+  suite.same = document.value("same", "");
   std::optional<Tuned> tuned;
-  if (const std::string file = reader.text("tuned", ""); !file.empty()) {
+  if (const std::string file = document.value("tuned", ""); !file.empty()) {
     tuned = read_tuned_up_to_date(file);
     suite.tuned_file = tuned->file;
     suite.tuned_hash = tuned->hash;
   }
-  suite.same = reader.text("same", "");
-  const json* sweeps = reader.find("sweeps");
-  if (!sweeps || !sweeps->is_array() || sweeps->empty())
-    throw UsageError(reader.where("sweeps") + " must be a list of sweeps");
-  for (std::size_t i = 0; i < sweeps->size(); ++i) {
-    suite.sweeps.push_back(read_sweep((*sweeps)[i],
-                                      "suite '" + path + "': sweeps[" + std::to_string(i) + "]",
-                                      tuned ? &*tuned : nullptr, suite.same));
-  }
-  check_contestants(suite, reader);
-  reader.finish();
+  for (const json& sweep : document.at("sweeps"))
+    suite.sweeps.push_back(
+        read_sweep(sweep, where + ": sweeps[" + std::to_string(suite.sweeps.size()) + "]",
+                   tuned ? &*tuned : nullptr, suite.same));
+  check_contestants(suite, where);
   return suite;
 }
+
+Suite parse_suite(const std::string& text, const std::string& path) {
+  return suite_of(suite_document(text, path), path);
+}
+
+Suite read_suite(const std::string& path) { return parse_suite(read_file(path, "suite"), path); }
 
 json to_json(const Suite& suite) {
   json sweeps = json::array();

@@ -1,5 +1,4 @@
-// A suite: what a sweep runs. Read from JSON (configs/*.json, schema configs/suite.schema.json),
-// strict about keys.
+// A suite: what a sweep runs. Read from JSON (configs/*.json, schema configs/suite.schema.json).
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -27,7 +26,7 @@ struct SweepSpec {
   double coarsest = 1.0 / 25, finest = 1.0 / 25600;  // s, ends of the step ladder
   bool adaptive = false;    // a step controller from `coarsest` down, instead of the ladder
   bool every_step = false;  // the whole ladder instead of a search; step sweeps always do
-  bool refine = true;       // best steps, by rungs between those that halve. Not in files
+  bool refine = true;       // also try rungs between the halvings. Not in files
   SceneParameters scene_parameters;
   std::map<std::string, inextensible::Settings> solver_options;  // a contestant's own go first
 };
@@ -39,16 +38,16 @@ struct Suite {
   double timeout = 60;  // s a point
   // The tightest of answer_levels that the search for steps goes on for; above all of them: none.
   double finest_error = answer_levels.back();
-  std::string same;  // the contestant that stands in every sweep twice; "": none
+  std::string same;  // the contestant that runs twice in every sweep; "": none
   // The file that the contestants' tuned settings are from, and a hash of what it says; "": none.
   std::string tuned_file, tuned_hash;
   std::vector<SweepSpec> sweeps;
-  // Times the fastest run of a place: a run that takes longer is stopped there. Not in files.
+  // A run is stopped once it takes this many times as long as the fastest one there. Not in files.
   double far_behind = 30;
 };
 
 std::vector<std::string> sweep_kinds();
-// Levels of error that best steps are sought for, loose to tight.
+// Levels of error that best steps are searched for, loose to tight.
 std::vector<double> levels_of(const Suite& suite);
 // Contestants of all sweeps, each name once.
 Contestants contestants_of(const Suite& suite);
@@ -58,6 +57,10 @@ Contestants contestants_of(const Suite& suite);
 Suite read_suite(const std::string& path);
 // The same of a text; `path` is for messages.
 Suite parse_suite(const std::string& text, const std::string& path);
+// Its two steps, for options that change the document in between: JSON that fits the schema, and
+// what it says.
+nlohmann::json suite_document(const std::string& text, const std::string& path);
+Suite suite_of(const nlohmann::json& document, const std::string& path);
 // parse_suite() reads it back.
 nlohmann::json to_json(const Suite& suite);
 

@@ -17,35 +17,6 @@ namespace harness {
 namespace {
 
 using nlohmann::json;
-using nlohmann::ordered_json;
-
-constexpr std::tuple place_fields{
-    field("resolution", &SettingsAt::resolution, "", "vertices along an edge"),
-    field("limit", &SettingsAt::limit, "", "permissible strain"),
-    field("settings", &SettingsAt::settings, "", "those that are not the default"),
-    field("evaluations", &TunedPlace::evaluations, "", "sets of settings that were tried"),
-    field("default_seconds", &TunedPlace::default_seconds, "s", "a simulated second"),
-    field("default_step", &TunedPlace::default_step, "s", ""),
-    field("seconds", &TunedPlace::seconds, "s", "with the settings"),
-    field("step", &TunedPlace::step, "s", "")};
-constexpr std::tuple entry_fields{field("kind", &TunedEntry::kind, "", "of scene"),
-                                  field("solver", &TunedEntry::solver, "", ""),
-                                  field("budget", &TunedEntry::budget, "", "at a place")};
-
-TunedEntry read_entry(const json& object, const std::string& where) {
-  TunedEntry entry;
-  read_fields(object, entry_fields, entry);
-  check_known("kind of scene", entry.kind, scene_kinds(), where);
-  const auto& backend = checked_backend(entry.solver, where);
-  for (const json& place : object.at("places")) {
-    read_fields(place, place_fields, entry.places.emplace_back());
-    check_settings(entry.places.back().settings, where + ": 'settings'", backend);
-  }
-  entry.rule = object.at("rule");
-  entry.context = object.at("context");
-  return entry;
-}
-
 // Two files with the same settings are the same to a sweep, whenever they were found.
 std::string hash_of(const std::vector<TunedEntry>& entries) {
   std::map<std::string, json> settings;
@@ -85,7 +56,11 @@ Tuned parse_tuned(const std::string& text, const std::string& file) {
   for (const json& object : document.at("tuned")) {
     const std::string place =
         "tuned settings '" + file + "': tuned[" + std::to_string(tuned.entries.size()) + "]";
-    TunedEntry entry = read_entry(object, place);
+    TunedEntry entry = object;
+    check_known("kind of scene", entry.kind, scene_kinds(), place);
+    const auto& backend = checked_backend(entry.solver, place);
+    for (const TunedPlace& at : entry.places)
+      check_settings(at.settings, place + ": 'settings'", backend);
     if (tuned.find(entry.kind, entry.solver))
       throw UsageError(place + ": " + entry.kind + " and " + entry.solver + " stand there twice");
     tuned.entries.push_back(std::move(entry));
@@ -94,19 +69,8 @@ Tuned parse_tuned(const std::string& text, const std::string& file) {
   return tuned;
 }
 
-ordered_json tuned_document(const std::vector<TunedEntry>& entries) {
-  ordered_json list = ordered_json::array();
-  for (const TunedEntry& entry : entries) {
-    ordered_json object, places = ordered_json::array();
-    for (const TunedPlace& place : entry.places)
-      write_fields(places.emplace_back(), place_fields, place);
-    write_fields(object, entry_fields, entry);
-    object["places"] = places;
-    object["rule"] = entry.rule;
-    object["context"] = entry.context;
-    list.push_back(object);
-  }
-  return {{"schema", "inextensible-tuned/3"}, {"tuned", list}};
+json tuned_document(const std::vector<TunedEntry>& entries) {
+  return {{"schema", "inextensible-tuned/3"}, {"tuned", entries}};
 }
 
 void tune(Contestants& all, const Tuned& tuned, const std::string& kind,

@@ -11,8 +11,7 @@
 
 namespace harness {
 
-// What was found at one size and strain limit of a tuning scene. Times are those of the best step
-// of those tried.
+// What was found at one size and strain limit of a tuning scene. Times are of the best step tried.
 struct TunedPlace : SettingsAt {                 // settings: those that are not the default
   int evaluations = 0;                           // sets of settings that were tried
   double default_seconds = 0, default_step = 0;  // s/s, s
@@ -20,17 +19,20 @@ struct TunedPlace : SettingsAt {                 // settings: those that are not
 
   double gain() const { return default_seconds / seconds; }
 };
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TunedPlace, resolution, limit, settings, evaluations,
+                                   default_seconds, default_step, seconds, step)
 
 struct TunedEntry {
   std::string kind;  // of scene
   std::string solver;
-  int budget = 0;  // sets of settings that might have been tried at a place
+  int budget = 0;  // most sets of settings that were to be tried at a place
   std::vector<TunedPlace> places;
   nlohmann::json rule;     // tuning_rule() of when it was found
   nlohmann::json context;  // date, commit and machine
 
   std::vector<SettingsAt> settings_at() const;
 };
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TunedEntry, kind, solver, budget, places, rule, context)
 
 struct Tuned {
   std::string file;  // its name
@@ -43,10 +45,10 @@ struct Tuned {
 // Throws UsageError, naming file, key and value.
 Tuned parse_tuned(const std::string& text, const std::string& file);
 
-nlohmann::ordered_json tuned_document(const std::vector<TunedEntry>& entries);
+nlohmann::json tuned_document(const std::vector<TunedEntry>& entries);
 
-// Under its own name a solver gets its tuned settings, as far as neither its entry nor `given`
-// says otherwise.
+// Gives each solver under its own name its tuned settings, unless its entry or `given` overrides
+// them.
 void tune(Contestants& all, const Tuned& tuned, const std::string& kind,
           const std::map<std::string, inextensible::Settings>& given = {});
 
@@ -58,9 +60,8 @@ const std::vector<SweepSpec>& tuning_scenes();
 // is smaller and does not take too long.
 std::vector<int> smaller_sizes(const std::string& scene);
 
-// All that a search depends on but for the programs that it times: the scene with all its
-// parameters, sizes, limits, ladder and level of error, and the solver's settings with their
-// defaults and ranges.
+// All that a search depends on except the programs that it times: the scene with its parameters,
+// sizes, limits, ladder and level of error, and the solver's settings, their defaults and ranges.
 nlohmann::json tuning_rule(const SweepSpec& scene, const inextensible::Backend& solver);
 
 // The first difference between the rule that an entry was found by and today's; "": there is none.

@@ -281,7 +281,7 @@ def named_documents() -> list[str]:
 
 
 def exit_codes() -> list[str]:
-    codes = set(re.findall(r" = (\d+)", read(ROOT / "harness/cli/command_line.h")))
+    codes = set(re.findall(r"^  \w+ = (\d+)", read(ROOT / "harness/cli/command.h"), re.MULTILINE))
     section = read(ROOT / "docs/using.md").partition("## Exit codes")[2].partition("\n## ")[0]
     explained = set(re.findall(r"^\| (\d+) \|", section, re.MULTILINE))
     return [f"docs/using.md: exit codes {sorted(explained)}, the program has {sorted(codes)}"] if codes != explained else []

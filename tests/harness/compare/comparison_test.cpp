@@ -205,13 +205,13 @@ TEST(Gate, RefusesWhatItDoesNotKnow) {
   EXPECT_EQ(message("{}"), "");
   for (const auto& [text, part] : std::vector<std::pair<std::string, std::string>>{
            {"{", "'g.json' is not JSON"},
-           {R"({"time": {}})", "did you mean 'times'?"},
-           {R"({"times": {"count": 1}})", "'count' is 1, must be true or false"},
-           {R"({"times": {"significance": 0.6}})", "at most 0.5"},
-           {R"({"times": {"minimum_ratio": 0.9}})", "'minimum_ratio' is 0.9"},
-           {R"({"counters": {"rule": "exakt"}})", "did you mean 'exact'?"},
-           {R"({"counters": {"names": ["iteration"]}})", "did you mean 'iterations'?"},
-           {R"({"errors": {"maxstrain": 2}})", "did you mean 'max_strain'?"}}) {
+           {R"({"time": {}})", "at its top: unknown key 'time'"},
+           {R"({"times": {"count": 1}})", "at [times][count], 1: "},
+           {R"({"times": {"significance": 0.6}})", "equal to 0.5"},
+           {R"({"times": {"minimum_ratio": 0.9}})", "[minimum_ratio], 0.9: "},
+           {R"({"counters": {"rule": "exakt"}})", "[rule], \"exakt\": "},
+           {R"({"counters": {"names": ["iteration"]}})", "[names][0], \"iteration\": "},
+           {R"({"errors": {"maxstrain": 2}})", "at [errors]: unknown key 'maxstrain'"}}) {
     const std::string said = message(text);
     EXPECT_NE(said.find(part), std::string::npos) << text << " -> " << said;
     EXPECT_NE(said.find("g.json"), std::string::npos) << said;

@@ -17,9 +17,7 @@ FilmRun filmed(const std::string& scene, const SceneParameters& given, const Con
   spec.strain_limits = {limit};
   spec.step = step;
   spec.frames_per_second = 32;
-  Recording recording = record(
-      spec, [] { return false; }, [](auto&&...) {});
-  return recording.takes.at(0);
+  return record(spec, [](auto&&...) {}).takes.at(0);
 }
 
 // Edges that shake between limits of 10 % bring energy back step by step. A body that moves does
