@@ -86,7 +86,7 @@ std::vector<std::string> scene_kinds();  // of all scenes, each once
 // or impossible ones.
 SceneParameters complete_parameters(const SceneType& type, const SceneParameters& given);
 // The scene of an existing name, with some of its parameters given.
-Scene built_scene(std::string_view name, const SceneParameters& given);
+Scene built_scene(std::string_view name, const SceneParameters& given = {});
 
 // ---- Cloth from a mesh of one's own: "mesh:shirt.obj,pins=y>1.2,body=body.obj" ----
 //

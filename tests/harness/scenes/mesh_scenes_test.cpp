@@ -19,8 +19,6 @@
 namespace harness {
 namespace {
 
-using testing::build;
-
 std::string file_with(const std::string& name, const std::string& text) {
   const std::string path = ::testing::TempDir() + name;
   std::ofstream(path) << text;
@@ -87,9 +85,9 @@ TEST(MeshScene, OfTrianglesIsThatOfTheQuadsTheyMake) {
   for (const auto& cut : {std::function<bool(int, int)>([](int, int) { return true; }),
                           std::function<bool(int, int)>([](int i, int j) { return (i + j) % 2; }),
                           std::function<bool(int, int)>([&](int, int) { return random() % 2; })}) {
-    const Scene quads = build("mesh:" + file_with("quads.obj", square(6)) + ",pins=y>-0.01");
+    const Scene quads = built_scene("mesh:" + file_with("quads.obj", square(6)) + ",pins=y>-0.01");
     const Scene triangles =
-        build("mesh:" + file_with("triangles.obj", square(6, cut)) + ",pins=y>-0.01");
+        built_scene("mesh:" + file_with("triangles.obj", square(6, cut)) + ",pins=y>-0.01");
     EXPECT_EQ(joined_places(quads, quads.problem->edges()),
               joined_places(triangles, triangles.problem->edges()));
     EXPECT_EQ(joined_places(quads, quads.problem->shear()->edges),
@@ -99,8 +97,8 @@ TEST(MeshScene, OfTrianglesIsThatOfTheQuadsTheyMake) {
 
 TEST(MeshScene, CutFinerIsTheFinerSquare) {
   const Scene coarse =
-      build("mesh:" + file_with("coarse.obj", square(4)) + ",pins=y>-0.01", {{"n", 3}});
-  const Scene fine = build("mesh:" + file_with("fine.obj", square(10)) + ",pins=y>-0.01");
+      built_scene("mesh:" + file_with("coarse.obj", square(4)) + ",pins=y>-0.01", {{"n", 3}});
+  const Scene fine = built_scene("mesh:" + file_with("fine.obj", square(10)) + ",pins=y>-0.01");
   EXPECT_EQ(joined_places(coarse, coarse.problem->edges()),
             joined_places(fine, fine.problem->edges()));
   EXPECT_NEAR(coarse.problem->total_mass(), fine.problem->total_mass(), 1e-12);
@@ -118,7 +116,7 @@ TEST(MeshScene, TrianglesThatMakeNoQuadsHoldWithSprings) {
   text << "f 1 2 3\nf 1 3 4\nf 1 4 2\n";
   const std::string name = "mesh:" + file_with("three.obj", text.str()) + ",pins=x>0.9999";
   for (const int n : {1, 2, 5}) {
-    const Scene mesh = build(name, {{"n", n}});
+    const Scene mesh = built_scene(name, {{"n", n}});
     const int vertices = 1 + 3 * n * (n + 1) / 2, triangles = 3 * n * n;
     EXPECT_EQ(mesh.problem->vertices(), vertices);
     EXPECT_EQ(mesh.triangles.size(), triangles);
@@ -135,8 +133,8 @@ TEST(MeshScene, FallsOntoItsBodyAndKeepsItsLimit) {
       "v -1 -1 -1\nv 2 -1 -1\nv 2 -1 1\nv -1 -1 1\nv -1 -1.5 -1\nv 2 -1.5 -1\nv 2 -1.5 1\nv -1 "
       "-1.5 1\nf 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
   // It hangs above, its lowest row on the box, and folds.
-  const Scene mesh =
-      build("mesh:" + file_with("sheet.obj", square(8)) + ",body=" + body, {{"duration", 0.6}});
+  const Scene mesh = built_scene("mesh:" + file_with("sheet.obj", square(8)) + ",body=" + body,
+                                 {{"duration", 0.6}});
   const auto stepper =
       inextensible::make_stepper("fast_projection", mesh.problem, {.strain_limit = 0.01});
   inextensible::State state = mesh.start;
