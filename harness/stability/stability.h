@@ -90,10 +90,10 @@ struct SameFrame {
   SameFrameScene scene;
   double first_contact = unknown;  // s, the first step's end at which the sphere moved a vertex, in
                                    // the run of fast projection; unknown where there is no sphere
-  std::vector<double> times;       // s
-  FrameDistances icd;              // from fast projection to ICD
-  FrameDistances moved_start;      // to fast projection from the moved start
-  std::string stopped;             // empty: all three ran to the end
+  std::vector<double> times = {};  // s
+  FrameDistances icd = {};         // from fast projection to ICD
+  FrameDistances moved_start = {};  // to fast projection from the moved start
+  std::string stopped = {};         // empty: all three ran to the end
 };
 SameFrame same_frame(const SameFrameScene& scene, std::uint64_t seed);
 

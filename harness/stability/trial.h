@@ -43,7 +43,7 @@ struct Trial {
   // N, of methods that are controlled by stiffness and promise no limit: one that would keep it.
   // Unknown: their default.
   double stiffness = unknown;
-  std::map<std::string, inextensible::Settings> settings;  // by solver
+  std::map<std::string, inextensible::Settings> settings = {};  // by solver
   // Changes the state before a step (moves a pin, adds noise). Energy is then not judged.
   std::function<void(inextensible::State& state, int step)> disturb = nullptr;
   // Energy may exceed the start's by this fraction of the scale (weight times size, plus kinetic
