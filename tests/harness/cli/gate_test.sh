@@ -112,7 +112,7 @@ for a, b in zip(given, printed):
     assert a["status"] != "ok" or len(b["seconds_per_simulated_second"]["samples"]) == 3'
 while IFS='|' read -r words replacement; do
   { head -n 1 points.txt && sed -n "1{s/$replacement/;p}" points.txt; } | "$BENCH_BINARY" point >stdout.txt 2>stderr.txt
-  [[ ${PIPESTATUS[1]} == 2 && ! -s stdout.txt && $(wc -l <stderr.txt) == 1 ]] && grep -qF "line 2: $words" stderr.txt ||
+  [[ ${PIPESTATUS[1]} == 2 && ! -s stdout.txt && $(wc -l <stderr.txt) == 1 ]] && grep -F "line 2" stderr.txt | grep -qF "$words" ||
     fail "point, $replacement: $(cat stdout.txt stderr.txt)"
 done <<'TABLE'
 'solver': no solver 'jacob'; did you mean 'jacobi'?|"solver": "jacobi"/"solver": "jacob"
