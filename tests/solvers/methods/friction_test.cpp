@@ -33,9 +33,9 @@ class Friction : public ::testing::TestWithParam<const char*> {};
 
 // What is in contact, and the method that moves it.
 struct Moving {
-  void advance(int steps, double h = short_step) {
+  void advance(int steps, double step_size = short_step) {
     for (int step = 0; step < steps; ++step) {
-      const StepResult result = stepper->advance(state, h);
+      const StepResult result = stepper->advance(state, step_size);
       ASSERT_TRUE(result) << result.detail << " at t = " << state.time;
     }
   }
