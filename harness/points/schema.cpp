@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
 #include <valijson/schema.hpp>
 #include <valijson/schema_parser.hpp>
@@ -103,6 +104,17 @@ ordered_json schema_document(const std::string& name) {
   return schema;
 }
 
+// The keys of all objects that a schema describes.
+std::vector<std::string> keys_of(const json& rules) {
+  std::vector<std::string> keys;
+  for (const auto& [name, rule] : rules.items()) {
+    if (name == "properties")
+      for (const auto& property : rule.items()) keys.push_back(property.key());
+    if (rule.is_structured()) std::ranges::copy(keys_of(rule), std::back_inserter(keys));
+  }
+  return keys;
+}
+
 }  // namespace
 
 std::vector<std::string> generated_schemas() {
@@ -160,8 +172,11 @@ void check_schema(const json& document, const std::string& schema, const std::st
   }
   const bool known = document.contains(pointer) && document.at(pointer).is_primitive();
   std::string what = error.description;
-  if (what.starts_with("Object contains a property"))
-    what = "unknown key " + what.substr(what.rfind(": '") + 2);
+  if (what.starts_with("Object contains a property")) {
+    const std::string key = what.substr(what.rfind(": '") + 2),
+                      near = closest(key.substr(1, key.size() - 2), keys_of(rules));
+    what = "unknown key " + key + (near.empty() ? "" : "; did you mean '" + near + "'?");
+  }
   throw UsageError("'" + path + "' is not a " + schema + " file: at " +
                    (place.empty() ? "its top" : shortened(place, 100)) +
                    (known ? ", " + value_text(document.at(pointer)) : "") + ": " +

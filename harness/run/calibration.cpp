@@ -131,7 +131,7 @@ Calibration calibrate_stiffness(double strain_limit, double guess,
   return StiffnessSearch(strain_limit, run).find(guess);
 }
 
-// As measured on a cloth of 15 x 15 and a chain of 80, with both methods that have springs.
+// Measured on a cloth of 15 x 15 and a chain of 80, with both methods that have springs.
 double nominal_seconds(const inextensible::WorkCounters& work, int edges) {
   return 15e-9 * static_cast<double>(work.spring_evaluations) +
          20e-9 * static_cast<double>(work.iterations) * edges +
@@ -139,8 +139,8 @@ double nominal_seconds(const inextensible::WorkCounters& work, int edges) {
          2e-9 * static_cast<double>(work.back_solves) * work.factor_nonzeros;
 }
 
-// The forces of the scene are its weight, and for what flies without one m v^2 / (2 size). They are
-// shared by as many strands as there are lengths of the scene in its edges: one in a chain, two for
+// The scene's force is its weight, or m v^2 / (2 size) of what flies without one. The number of
+// strands that share it is the length of all edges over the scene's size: one in a chain, two for
 // each row of a cloth.
 double first_stiffness(const Scene& scene, double strain_limit) {
   double length = 0;

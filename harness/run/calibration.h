@@ -16,7 +16,7 @@ struct CalibrationTrial {
   double seconds = 0;
   std::string detail;
 };
-// A trial's run may be cut short at so many times the limit.
+// A trial may be cut short at this many times the limit.
 inline constexpr double calibration_cut_short = 2;
 inline constexpr int calibration_run_limit = 16, calibration_failure_limit = 6;
 
@@ -41,7 +41,7 @@ Calibration calibrate_stiffness(double strain_limit, double guess,
 // Unlike measured time it is always the same.
 double nominal_seconds(const inextensible::WorkCounters& work, int edges);
 
-// N: where a search may begin without a neighbour's stiffness to go by.
+// N: an estimate to begin a search from.
 double first_stiffness(const Scene& scene, double strain_limit);
 
 }  // namespace harness

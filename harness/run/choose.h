@@ -29,13 +29,13 @@ struct Trials {
   bool complete = true;               // false: the time was over before all ladders were done
 };
 
-// The order of the searches' ladders: the fastest first of those that met the strain limit when
-// they were screened, then that of those that missed it, then the rest.
+// The order of the searches' ladders: contestants that met the strain limit when screened, fastest
+// first; then those that missed it; then the rest.
 std::vector<std::size_t> ladder_order(const std::vector<PointResult>& screened);
 
-// Screens all contestants before the first ladder, runs ladders in ladder_order(), and takes more
-// samples of the fastest runs. A run in progress is stopped when the time is over. Throws
-// Interrupted if limits.interrupted() says so, whatever has been found.
+// Screens all contestants, runs their ladders in ladder_order(), and takes more samples of the
+// fastest runs. A run in progress is stopped when the time is over. Throws Interrupted if
+// limits.interrupted().
 Trials try_contestants(const Suite& suite, const std::vector<Search>& searches, const Wish& wish,
                        const ChooseLimits& limits, const SweepEvents& events, const Runner& run);
 

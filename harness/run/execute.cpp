@@ -56,8 +56,7 @@ void forget_point(const std::string& key, Journal& journal) {
   journal.forget(key);
 }
 
-// Leaves a point of a result file its first sample. Lists without an entry for each sample stay
-// whole.
+// Leaves a point of a result file its first sample; lists without an entry for each sample stay.
 std::vector<Samples> cut_off_repetitions(PointResult& point) {
   const std::size_t samples = point.samples.size();
   std::vector<Samples> repetitions(samples > 1 ? samples - 1 : 0);
@@ -133,7 +132,7 @@ Runner isolated(const Runner& inner, double memory) {
             {limits.timeout, memory, limits.interrupted},
             [&](Heartbeat& heartbeat) {
               RunLimits own = limits;
-              own.interrupted = nullptr;  // that is the parent's business
+              own.interrupted = nullptr;  // the parent asks
               own.heartbeat = &heartbeat;
               own.scene = scene;
               return to_json(inner(spec, own));

@@ -14,12 +14,12 @@
 
 namespace harness {
 
-// About a millisecond of what solvers do, on data in the second-level cache; s.
+// Takes about a millisecond for work like a solver's, in the second-level cache; s.
 double fixed_work();
 
 class QuietProbe {
  public:
-  // A look that took more than this many times the least one seen was disturbed.
+  // A look that took more than this many times the shortest one was disturbed.
   static constexpr double disturbed_from = 1.05;
   static constexpr int most_retaken = 3;  // times that one sample is taken again
 

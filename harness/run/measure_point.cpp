@@ -31,7 +31,7 @@ double peak_rss_bytes() {
   return 0;
 }
 
-// Runs without the judge that make one sample; or up to the one that failed.
+// Runs that make one sample, or up to the one that failed.
 struct Batch {
   Run last;
   double seconds = 0, cpu_seconds = 0, filter_seconds = 0;  // of all runs
@@ -54,8 +54,7 @@ struct Sampler {
   const PointResult& point;  // with the previous samples
   const PointRunner& runner;
   const inextensible::Settings& settings;
-  // Reads of the clock between phases are part of the time of a short step, so that it is timed
-  // without them, and the phases in runs of their own.
+  // Reads of the clock would distort the time of a short step: its phases are timed in other runs.
   bool short_steps;
   const RunLimits& limits;
   Samples& taken;                          // gets the samples
@@ -140,9 +139,8 @@ bool calibrate(PointResult& point, const PointRunner& runner, inextensible::Sett
   return true;
 }
 
-// The judged run, and a first sample: that run itself if it is long enough, and nothing disturbed
-// it. Iterates are kept while the solver's clock runs, so that an observed run's time is not its
-// own.
+// The judged run, and a first sample: the same run if it is long enough and undisturbed, and if the
+// judge saw no iterates, which are kept while the clock runs.
 void measure(PointResult& point, const PointRunner& runner, const inextensible::Settings& settings,
              const RunLimits& limits) {
   const bool timed = limits.timed;

@@ -2,6 +2,7 @@
 #include <functional>
 #include <map>
 #include <span>
+#include <tuple>
 
 #include "harness/base/errors.h"
 #include "harness/run/measure_point.h"
@@ -25,8 +26,7 @@ std::vector<double> step_ladder(const SweepSpec& sweep, std::span<const double> 
   return ladder;
 }
 
-// The rungs of a search that the filters leave. Where they leave out some that halve, no others are
-// added.
+// Adds the rungs that the filters leave; the finer ones only if all that halve are left.
 void add_ladder(Search& search, const SweepSpec& sweep, const SweepFilters& filters) {
   const auto kept = [&](std::span<const double> divisors) {
     std::vector<double> ladder = step_ladder(sweep, divisors);
@@ -48,13 +48,13 @@ void add_ladder(Search& search, const SweepSpec& sweep, const SweepFilters& filt
 
 constexpr double runs_of_a_search = 6;  // as measured, with levels of error down to 1 %
 constexpr double runs_of_a_calibration = 6;
-// Steps whose samples tell which is best, of a search, at any motion and at levels of error.
+// Steps of a search that may be best, at any motion and at levels of error.
 constexpr double repeated_of_a_search = 2;
 // Over the timed part of a short run: making the solver, and looks at the machine.
 constexpr double around_a_run = 1.3;
 
-// Time of simulating a second; the time-out where no step is taken, nothing where the solver does
-// not take the problem.
+// Time of a simulated second: the time-out if no step succeeds, 0 if the solver does not support
+// the problem.
 double seconds_per_second(const Search& search, double step, double timeout) {
   PointSpec spec = search.base;
   spec.step = step;
@@ -92,9 +92,8 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
         base.seed = suite.seed;
         base.adaptive = sweep.adaptive;
         // Without a limit of its own a solver does the same at all of them.
-        const auto* backend = inextensible::find_backend(contestant.solver);
-        const bool limited =
-            !backend || backend->strain_control != inextensible::StrainControl::none;
+        const bool limited = inextensible::find_backend(contestant.solver)->strain_control !=
+                             inextensible::StrainControl::none;
         for (const double limit : std::span(limits).first(limited ? limits.size() : 1)) {
           Search search;
           search.base = base;
@@ -146,9 +145,8 @@ Estimate estimate(const Suite& suite, const std::vector<Search>& searches) {
     const double duration = middle.base.scene_parameters.at("duration");
     const double run =
         std::min(duration * seconds_per_second(middle, step, suite.timeout), suite.timeout);
-    const auto* backend = inextensible::find_backend(middle.base.solver);
-    const bool calibrated =
-        backend && backend->strain_control == inextensible::StrainControl::stiffness;
+    const bool calibrated = inextensible::find_backend(middle.base.solver)->strain_control ==
+                            inextensible::StrainControl::stiffness;
     for (const Search* search : members) {
       const auto rungs = static_cast<double>(search->ladder.size());
       const double tried = search->every_step ? rungs : std::min(rungs, runs_of_a_search);

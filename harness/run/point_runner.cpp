@@ -238,7 +238,7 @@ Run PointRunner::run(const inextensible::Settings& settings, bool judged, double
   State state = first_state_;
   Observed observer(*this, judged, stop_at, part, run);
   observer.each({}, {});
-  // Between blocks there is little but reads of the clock; the judge takes longer than steps do.
+  // The judge can take longer than the steps; without it there are only reads of the clock between.
   const double cpu_begin = thread_seconds();
   const DriveState driven =
       drive(*run.stepper, state, {spec_.step, steps_, spec_.adaptive ? usual_halvings : 0},

@@ -15,8 +15,8 @@ class FrameTimes {
   // step: s; frames that are shorter than it are left out.
   explicit FrameTimes(double step);
 
-  // `steps` equal ones that ended at `time` (s, of the scene) took `seconds` of wall time together.
-  // A step belongs to the frame in which it ends.
+  // `steps` equal steps that ended at `time` (s, of the scene) took `seconds` of wall time in
+  // total. A step belongs to the frame in which it ends.
   void add(int steps, double step, double time, double seconds);
 
   // Times of whole frames; rates without any are left out.
@@ -25,10 +25,10 @@ class FrameTimes {
  private:
   struct Film {
     double rate;                  // frames a second
-    std::vector<double> seconds;  // of wall time, of each frame so far
+    std::vector<double> seconds;  // wall time of each frame so far
   };
   std::vector<Film> films_;
-  double time_ = 0;  // s, that has been simulated
+  double time_ = 0;  // s, simulated so far
 };
 
 struct Run : RunOutcome {

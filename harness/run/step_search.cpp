@@ -20,7 +20,7 @@ constexpr double stays = 0.85;
 constexpr int longest_stay = 5;
 constexpr double never = std::numeric_limits<double>::infinity();
 
-// A point is skipped where its calibration timed out.
+// A point whose calibration timed out is skipped.
 bool gave_up(const PointResult& point) {
   return point.status == PointStatus::timeout || point.status == PointStatus::skipped;
 }

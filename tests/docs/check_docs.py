@@ -72,16 +72,6 @@ def lines_with(path: Path, text: str) -> list[int]:
     return [number for number, line in enumerate(read(path).splitlines(), 1) if text in line] if path.is_file() else []
 
 
-def found_again(path: str, line: int, text: str) -> tuple[str, int] | None:
-    """Where the text stands now: in the same file, or in the only file that has it."""
-    here = lines_with(ROOT / path, text)
-    if here:
-        return path, min(here, key=lambda number: abs(number - line))
-    holders = [(file, lines) for file in files_of_tree() if (lines := lines_with(file, text))]
-    named = [(file, lines) for file, lines in holders if file.name == Path(path).name] or holders
-    return (str(named[0][0].relative_to(ROOT)), named[0][1][0]) if len(named) == 1 else None
-
-
 def quotes(document: Path) -> list[str]:
     return [f"{path}: '{text}' is not in line {line} (run tests/docs/check_docs.py --fix)"
             for path, line, text in QUOTE.findall(read(document)) if int(line) not in lines_with(ROOT / path, text)]
@@ -235,8 +225,9 @@ def tables(document: Path) -> list[str]:
 
 def fix() -> None:
     def renewed(match: re.Match[str]) -> str:
-        place = found_again(match[1], int(match[2]), match[3])
-        return f"`{place[0]}:{place[1]}`: `{match[3]}`" if place else match[0]
+        lines = lines_with(ROOT / match[1], match[3])
+        nearest = min(lines, key=lambda number: abs(number - int(match[2])), default=match[2])
+        return f"`{match[1]}:{nearest}`: `{match[3]}`"
 
     for document in documents():
         text = read(document)

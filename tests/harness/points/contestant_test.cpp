@@ -119,7 +119,7 @@ TEST(Suite, NamesFileKeyAndValueOfWhatIsWrong) {
       {sweep(R"("limits": [0])"), "[limits][0], 0: "},
       {sweep(R"("limits": "all")"), "[limits], \"all\": "},
       {suite_text("", R"("limit": 0.1)", "drap"), "did you mean 'drape'"},
-      {sweep(R"("limit": 0.1, "solver": ["icd"])"), "at [sweeps][0]: unknown key 'solver'"},
+      {sweep(R"("limit": 0.1, "solver": ["icd"])"), "unknown key 'solver'; did you mean 'solvers'"},
       {sweep(R"("limit": 0.1, "scene_parameters": {"n": 1})"), "'n' is 1"},
       {sweep(R"("limit": 0.1, "scene_parameters": {"m": 1})"), "no parameter of scene chain 'm'"},
       {sweep(R"("limit": 0.1, "scene_parameters": {"duration": 1e9})"), "'duration'"},
