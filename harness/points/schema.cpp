@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
 #include <valijson/schema.hpp>
 #include <valijson/schema_parser.hpp>
@@ -105,14 +104,12 @@ ordered_json schema_document(const std::string& name) {
 }
 
 // The keys of all objects that a schema describes.
-std::vector<std::string> keys_of(const json& rules) {
-  std::vector<std::string> keys;
+void add_keys(const json& rules, std::vector<std::string>& keys) {
   for (const auto& [name, rule] : rules.items()) {
-    if (name == "properties")
-      for (const auto& property : rule.items()) keys.push_back(property.key());
-    if (rule.is_structured()) std::ranges::copy(keys_of(rule), std::back_inserter(keys));
+    for (const auto& property : rule.items())
+      if (name == "properties") keys.push_back(property.key());
+    if (rule.is_structured()) add_keys(rule, keys);
   }
-  return keys;
 }
 
 }  // namespace
@@ -173,9 +170,13 @@ void check_schema(const json& document, const std::string& schema, const std::st
   const bool known = document.contains(pointer) && document.at(pointer).is_primitive();
   std::string what = error.description;
   if (what.starts_with("Object contains a property")) {
-    const std::string key = what.substr(what.rfind(": '") + 2),
-                      near = closest(key.substr(1, key.size() - 2), keys_of(rules));
-    what = "unknown key " + key + (near.empty() ? "" : "; did you mean '" + near + "'?");
+    const auto begin = what.rfind(": '") + 3;
+    const std::string key = what.substr(begin, what.rfind('\'') - begin);
+    std::vector<std::string> keys;
+    add_keys(rules, keys);
+    std::erase(keys, key);  // known elsewhere
+    const std::string near = closest(key, keys);
+    what = "unknown key '" + key + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?");
   }
   throw UsageError("'" + path + "' is not a " + schema + " file: at " +
                    (place.empty() ? "its top" : shortened(place, 100)) +
