@@ -128,7 +128,7 @@ std::shared_ptr<const Reference> reference_for(const SweepSpec& sweep, Reference
   };
   std::string reason;
   try {
-    const auto made = in_child(
+    auto made = in_child(
         {.timeout = limits.seconds, .interrupted = stop}, compute,
         [](const json& document) {
           return std::make_shared<const Reference>(reference_of(document, "the quick reference"));

@@ -324,8 +324,8 @@ Pixels trace(const Shot& shot, const View& view, int width, int samples) {
     for (int column = 0; column < pixels.width; ++column) {
       Vector3d sum = Vector3d::Zero();
       for (int sample = 0; sample < samples * samples; ++sample) {
-        const double right = (sample % samples + 0.5) / samples;
-        const double down = (sample / samples + 0.5) / samples;
+        const int place = sample % samples, line = sample / samples;
+        const double right = (place + 0.5) / samples, down = (line + 0.5) / samples;
         const Vector3d direction =
             view.ray(2 * (column + right) / pixels.width - 1, 1 - 2 * (row + down) / pixels.height);
         sum += tracer.colour(direction, sample);

@@ -259,6 +259,7 @@ Scene build_cusick(const SceneParameters& p) {
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-function-size): a table
 std::vector<SceneType> cloth_scenes() {
   return {
       {.name = "drape",

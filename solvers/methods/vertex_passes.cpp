@@ -231,10 +231,8 @@ double VertexPasses::visit(const Group& group, double stiffness_scale, double re
     const double* to = y_.col(axis).data() + group.place;
     for (int i = 0; i < width; ++i) f[axis][i] = inertia[i] * (to[i] - x[axis][i]);
   }
-  for (int i = 0; i < width; ++i) {
-    h[0][i] = h[3][i] = h[5][i] = inertia[i];
-    h[1][i] = h[2][i] = h[4][i] = 0;
-  }
+  for (int i = 0; i < width; ++i)
+    h[0][i] = h[3][i] = h[5][i] = inertia[i], h[1][i] = h[2][i] = h[4][i] = 0;
   add_springs(group, stiffness_scale, model);
   add_bending(group, stiffness_scale, model);
   const double* plane[4];
