@@ -160,6 +160,7 @@ struct SceneOptions {
   Numbers n;
   Words set;               // NAME=NUMBER
   std::string pins, body;  // for a mesh
+  int least_n = 2;         // of --n
 
   void declare(const Command& to, const std::string& standard);
   std::string name() const;                     // with the pins and body of a mesh

@@ -32,6 +32,7 @@ struct ReferenceVerb : SweepOptions {
   bool again = false;
 
   void declare(const Command& command) {
+    least_n = 1;  // a mesh as it is
     declare_scenes(command, command);
     command.flag("--again", again, "also compute references that exist already");
     command.option("--finest", finest, "smallest step of step halving, s", "S", Bounds::positive());

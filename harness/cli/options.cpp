@@ -19,7 +19,7 @@ void SceneOptions::declare(const Command& to, const std::string& standard) {
   to.option("--scene", scene, "one of `bench list scenes`, or mesh:FILE.obj; default: " + standard,
             "SCENE");
   to.option("--n", n, "size of the scene; a resolution sweep takes several, e.g. 20,40,80", "N",
-            Bounds::whole_number(2));
+            Bounds::whole_number(least_n));
   to.repeatable("--set", set, "a parameter of the scene; repeatable", "NAME=NUMBER");
   to.option("--pins", pins,
             "of mesh:FILE.obj: which vertices are pinned, e.g. 'y > 1.2' or 'y > 1.2 and x < 0'",
