@@ -167,8 +167,8 @@ Trials measure(const Suite& suite, const Wish& wish, const ChooseLimits& limits,
 
 struct Choose : SceneOptions {
   std::string solver;
-  double limit = 0.01, seconds = 60;
-  Wish wish;  // its budget in ms until run()
+  double limit = 0.01, seconds = 60, budget = 0;  // budget: ms
+  Wish wish;
   bool no_wait = false;
 
   void declare(const Command& command) {
@@ -180,7 +180,7 @@ struct Choose : SceneOptions {
                    "E", Bounds::positive());
     command.option("--fps", wish.rate,
                    "frames a second: 24, 30 or 60 (default); no step is longer than a frame", "N");
-    command.option("--budget", wish.budget, "milliseconds of computing that a frame may take", "MS",
+    command.option("--budget", budget, "milliseconds of computing that a frame may take", "MS",
                    Bounds::positive());
     add_solver(command, solver);
     command.option("--seconds", seconds, "time that measuring may take; default: 60", "S",
@@ -213,7 +213,7 @@ struct Choose : SceneOptions {
   int run() {
     if (std::ranges::count(frame_rates, wish.rate) == 0)
       throw UsageError("--fps is " + number_text(wish.rate) + ", must be 24, 30 or 60");
-    wish.budget *= 1e-3;
+    wish.budget = 1e-3 * budget;
     const Suite tried = suite();
     const TimingLock lock(!no_wait);
     const auto begin = Clock::now();

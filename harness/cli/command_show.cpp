@@ -94,10 +94,11 @@ struct Budget {
   }
 
   int run() {
-    for (double& budget : ms) budget *= 1e-3;  // s
+    Numbers seconds = ms;
+    for (double& budget : seconds) budget *= 1e-3;
     const auto sweeps = documents_of(read_all(files, ResultKinds::all), is_sweep);
     std::vector<analysis::BudgetTable> tables;
-    if (!sweeps.empty()) tables = analysis::budget_tables(joined(sweeps), ms);
+    if (!sweeps.empty()) tables = analysis::budget_tables(joined(sweeps), seconds);
     if (tables.empty())
       throw UsageError("'" + files.front() +
                        "' has no times of frames; sweeps of at least one second have them");

@@ -4,6 +4,7 @@
 #include <iomanip>
 #include <limits>
 
+#include "harness/base/table.h"
 #include "harness/base/timing_lock.h"
 #include "harness/cli/command.h"
 #include "harness/points/context.h"
@@ -89,10 +90,8 @@ struct Tune {
   std::vector<SweepSpec> scenes() const {
     std::vector<SweepSpec> chosen = tuning_scenes();
     if (!scene.empty()) {
-      std::vector<std::string> names;
-      names.reserve(chosen.size());
-      for (const SweepSpec& each : chosen) names.push_back(each.scene);
-      check_known("scene to tune on", scene, names);
+      check_known("scene to tune on", scene,
+                  in_order(chosen, [](const SweepSpec& s) { return s.scene; }));
       std::erase_if(chosen, [this](const SweepSpec& s) { return s.scene != scene; });
     }
     if (!own_places()) return chosen;

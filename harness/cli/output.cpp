@@ -128,8 +128,7 @@ void Progress::show(double fraction, const std::string& head, const std::string&
   constexpr std::size_t cells = 12;
   const auto filled = std::min(static_cast<std::size_t>(fraction * cells), cells);
   line = "[" + std::string(filled, '#') + std::string(cells - filled, '.') + "] " + line;
-  line.resize(
-      std::min(line.size(), output_columns(STDERR_FILENO) - 1));  // a full line would scroll
+  line.resize(std::min(line.size(), output_columns(STDERR_FILENO) - 1));  // a full one scrolls
   clear();
   width_ = line.size();
   std::cerr << line << std::flush;

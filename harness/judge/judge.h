@@ -25,7 +25,7 @@ class ResidualProbe final : public inextensible::IterateObserver {
     watching_ = true;
     iterations_ = 0;
   }
-  // Of the step since watch(), accepted at this time (s): the mean of |F| over vertices. Nothing if
+  // The mean of |F| over vertices in the step since watch(), accepted at this time (s). Nothing if
   // the step needed no iteration.
   std::optional<ResidualSample> residual(double time);
 

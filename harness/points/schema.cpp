@@ -167,7 +167,7 @@ void check_schema(const json& document, const std::string& schema, const std::st
     place += step;
     pointer /= step.substr(1, step.size() - 2);  // [key] or [index]
   }
-  const bool known = document.contains(pointer) && document.at(pointer).is_primitive();
+  const bool plain = document.contains(pointer) && document.at(pointer).is_primitive();
   std::string what = error.description;
   if (what.starts_with("Object contains a property")) {
     const auto begin = what.rfind(": '") + 3;
@@ -180,7 +180,7 @@ void check_schema(const json& document, const std::string& schema, const std::st
   }
   throw UsageError("'" + path + "' is not a " + schema + " file: at " +
                    (place.empty() ? "its top" : shortened(place, 100)) +
-                   (known ? ", " + value_text(document.at(pointer)) : "") + ": " +
+                   (plain ? ", " + value_text(document.at(pointer)) : "") + ": " +
                    shortened(what, 200));
 }
 

@@ -14,13 +14,15 @@ namespace harness {
 Pendulum::Pendulum(Links links, std::vector<double> angles)
     : links_(std::move(links)), state_(std::move(angles)) {
   state_.resize(2 * state_.size(), 0.0);
+  scratch_.resize(3 * state_.size());
 }
 
-bool Pendulum::rates(const double* state, double* rate) const {
+bool Pendulum::rates(const double* state, double* rate) {
   const std::size_t n = links_.mass.size();
   const double* theta = state;
   const double* omega = state + n;
-  std::vector<double> cosine(n), sine(n), diagonal(n), off(n), right(n), tension(n);
+  double *cosine = scratch_.data(), *sine = cosine + n, *diagonal = sine + n, *off = diagonal + n,
+         *right = off + n, *tension = right + n;
   for (std::size_t i = 0; i < n; ++i) {
     cosine[i] = std::cos(theta[i]);
     sine[i] = std::sin(theta[i]);
@@ -40,10 +42,10 @@ bool Pendulum::rates(const double* state, double* rate) const {
   if (n == 1) {
     tension[0] = right[0] / diagonal[0];
   } else {
-    const auto d = gsl_vector_const_view_array(diagonal.data(), n);
-    const auto e = gsl_vector_const_view_array(off.data(), n - 1);
-    const auto b = gsl_vector_const_view_array(right.data(), n);
-    auto t = gsl_vector_view_array(tension.data(), n);
+    const auto d = gsl_vector_const_view_array(diagonal, n);
+    const auto e = gsl_vector_const_view_array(off, n - 1);
+    const auto b = gsl_vector_const_view_array(right, n);
+    auto t = gsl_vector_view_array(tension, n);
     if (gsl_linalg_solve_symm_tridiag(&d.vector, &e.vector, &b.vector, &t.vector) != GSL_SUCCESS)
       return false;
   }

@@ -36,13 +36,14 @@ class Pendulum {
 
   // Rates (theta', theta'') of a state (theta, theta'), 2 N numbers each. False if the tensions
   // cannot be found.
-  bool rates(const double* state, double* rate) const;
+  bool rates(const double* state, double* rate);
 
  private:
   Links links_;
   std::vector<double> state_;  // theta, then theta'
   double time_ = 0;
-  double step_ = 1e-6;  // s, the integrator's next one
+  std::vector<double> scratch_;  // of rates(), six numbers a link
+  double step_ = 1e-6;           // s, the integrator's next one
 };
 
 }  // namespace harness

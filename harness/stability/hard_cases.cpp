@@ -29,8 +29,7 @@ constexpr double closest_point_energy = 3;
 
 // A power of two, so that the candidates on the singular positions are reached exactly.
 constexpr double q_step = 1.0 / 128;
-constexpr double q_limit =
-    5e-7;  // between two of the distances of the series "Q1 near" to "Q4 near"
+constexpr double q_limit = 5e-7;  // between two distances of the series "Q1 near" to "Q4 near"
 
 Trial one_step(Draft mesh, const Positions& candidate) {
   mesh.parts.gravity.setZero();

@@ -44,7 +44,7 @@ inline json point(const std::string& scene, const std::string& sweep, const std:
           {"max_strain", limit}};
 }
 
-// Of points of which a test gives a part. noise: q95 of the A/A pair; 0: there is none.
+// The parts of points that a test gives, completed. noise: q95 of the A/A pair; 0: there is none.
 inline json document(const std::vector<json>& points, double noise = 0) {
   json result{{"points", json::array()}};
   PointResult whole;

@@ -176,8 +176,7 @@ struct OnPost : Moving {
     }
     return tension / gravity;
   }
-  // Of the heavy load.
-  double height() const { return state.x(1, vertices + 1); }
+  double height() const { return state.x(1, vertices + 1); }  // of the heavy load
   double speed() const { return -state.v(1, vertices + 1); }  // downwards
 };
 
