@@ -94,7 +94,7 @@ TEST(Documents, CorruptedSuitesAreReadOrRefusedInALine) {
     const std::string text =
         harness::read_file(std::string(SOURCE_DIR) + "/configs/" + name, "suite");
     ASSERT_EQ(read_as_suite(text), "") << name;
-    corrupt_and_read(text, read_as_suite, inextensible::testing::trials(500));
+    corrupt_and_read(text, read_as_suite, inextensible::testing::trials(200));
   }
 }
 
