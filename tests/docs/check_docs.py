@@ -15,6 +15,7 @@ and that line of that file must then contain the text. Generated blocks end with
     <!-- folders of solvers -->                 which folders each folder of solvers/CMakeLists.txt uses
     <!-- gaps PATTERN TIME ... -->              the parts of the gaps of the committed references that match, at these times
     <!-- steps RESULT.json LIMIT STEP ... -->    time and largest error of every contestant at these steps
+    <!-- errors RESULT.json LIMIT CONTESTANT ... STEP ... -->   the errors of these at each fifth of the run
     <!-- orders ANSWERS.json NAME ... -->        the orders of convergence of these known answers
     <!-- methods HEADLINE, RESULT.json LIMIT, ... -->   each method's time as published and in its best stepper, within that error
 
@@ -41,7 +42,7 @@ LINK = re.compile(r"\]\(([^)\s]+)\)")
 BACKTICKS = re.compile(r"`([^`\n]+)`")
 PATH = re.compile(r"\.?[\w-][\w./*-]*/[\w./*-]*")
 NAMED_DOCUMENT = re.compile(r"[\w/.-]*\w\.md\b")
-BLOCK = re.compile(r"<!-- (references|bench list|folders of|methods|orders|gaps|steps)([^>:]*?) -->\n\n?.*?<!-- end of list -->", re.DOTALL)
+BLOCK = re.compile(r"<!-- (references|bench list|folders of|methods|orders|gaps|steps|errors)([^>:]*?) -->\n\n?.*?<!-- end of list -->", re.DOTALL)
 SURE = 3  # gaps of a reference
 SOURCES = ("solvers", "harness", "tests", "plots", "cmake", "configs")
 SOURCE_SUFFIXES = {".cpp", ".h", ".py", ".sh", ".cmake", ".txt", ".json"}
@@ -147,32 +148,32 @@ def planes_of(file: str) -> list[dict]:
 
 
 def methods_of(words: str) -> str:
-    """A row for each method: milliseconds in its published stepper, then in its best one where that is faster."""
+    """A row for each method: milliseconds in its published stepper, then in its best one where that is faster; bold where it leads clearly."""
     headline, *columns = (part.split() for part in words.split(","))
-    level, titles, times = float(headline[0]), [], []  # times: of each column, of each contestant
+    level, titles, times, leaders = float(headline[0]), [], [], []  # times: of each column, of each contestant
     for file, limit in columns:
         plane = next(p for p in planes_of(file) if p["sweep"] != "resolution" and float(limit) in p["strain_limits"])
         cell = next(c for c in plane["cells"] if (c["strain_limit"], c["error_level"]) == (float(limit), level))
         titles.append(f"{plane['scene'].replace('_', ' ')} {plane['resolution']}, {100 * float(limit):g} %")
         times.append({entry["row"]: 1e3 * entry["seconds"] for entry in cell["entries"] if entry["counts"]})
+        leaders.append(cell["first"].partition("@")[0] if ((cell["lead_over_next_family"] or {}).get("low") or 1) > 1 else "")
 
     def in_steppers(column: dict[str, float], method: str) -> dict[str, float]:
         return {row: time for row, time in column.items() if row.partition("@")[0] == method}
 
-    def text(column: dict[str, float], method: str) -> str:
+    def text(column: dict[str, float], leader: str, method: str) -> str:
         own = in_steppers(column, method)
         if not own:
             return "-"
         best = min(own, key=own.__getitem__)
-        fastest = {row.partition("@")[0]: time for row, time in column.items() if time <= min(column.values())}
         shown = f"{own[method]:.3g}" if method in own else "-"
         if best != method:
             shown += f", {own[best]:.3g} @{best.partition('@')[2]}"
-        return f"**{shown}**" if method in fastest else shown
+        return f"**{shown}**" if method == leader else shown
 
     methods = {row.partition("@")[0] for column in times for row in column}
     order = sorted(methods, key=lambda m: [min(in_steppers(column, m).values(), default=math.inf) for column in reversed(times)])
-    return markdown(["method", *titles], [[f"`{m}`", *(text(column, m) for column in times)] for m in order])
+    return markdown(["method", *titles], [[f"`{m}`", *(text(column, leader, m) for column, leader in zip(times, leaders))] for m in order])
 
 
 def orders_of(words: str) -> str:
@@ -211,7 +212,24 @@ def steps_of(words: str) -> str:
                     [[f"`{contestant}`", *(text(contestant, step) for step in steps)] for contestant in dict.fromkeys(p["contestant"] for p in points)])
 
 
-BLOCKS = {"references": references, "bench list": table_of, "folders of": folders_of, "methods": methods_of, "orders": orders_of, "gaps": gaps_of, "steps": steps_of}
+def errors_of(words: str) -> str:
+    """In percent of the scene's size, at each fifth of the run; `-` where a run failed or there is none."""
+    file, limit, *rest = words.split()
+    contestants, steps = [word for word in rest if word[0].isalpha()], [float(word) for word in rest if not word[0].isalpha()]
+    points = {(p["contestant"], step): p for p in json_of(ROOT / file)["points"] for step in steps
+              if p["strain_limit"] == float(limit) and p["status"] == "ok" and math.isclose(p["step"], step)}
+    fifths = [next(iter(points.values()))["duration"] * i / 5 for i in range(1, 6)]
+
+    def text(point: dict | None, time: float) -> str:
+        series = point["error"]["error_series"] if point else []
+        return next((f"{100 * error:.2g}" for at, error, *_ in series if math.isclose(at, time)), "-")
+
+    return markdown(["contestant", "step", *(f"{time:g} s" for time in fifths)],
+                    [[f"`{c}`", f"1/{1 / step:g} s", *(text(points.get((c, step)), time) for time in fifths)] for c in contestants for step in steps])
+
+
+BLOCKS = {"references": references, "bench list": table_of, "folders of": folders_of, "methods": methods_of, "orders": orders_of, "gaps": gaps_of, "steps": steps_of,
+          "errors": errors_of}
 
 
 def with_tables(text: str) -> str:

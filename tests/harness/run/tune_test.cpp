@@ -67,17 +67,6 @@ TEST(TuneSearch, FindsTheLowestPointOfAValleyAcrossTwoSettings) {
   EXPECT_GE(within_10_percent, valleys * 90 / 100);
 }
 
-TEST(TuneSearch, KeepsTheDefaultsIfNothingIsBetter) {
-  const auto flat = [](const Values& v, double) {
-    return std::optional(1 + 0.02 * std::sin(50 * v[0] + 9 * v[1]));  // 4 %: below what counts
-  };
-  EXPECT_EQ(tune_values(numbers(), flat, 40).values, (Values{1, 0.1, 0}));
-  const auto fails = [](const Values&, double) { return std::optional<double>(); };
-  const TuneOutcome failed = tune_values(numbers(), fails, 40);
-  EXPECT_EQ(failed.values, (Values{1, 0.1, 0}));
-  EXPECT_EQ(failed.evaluations, 1) << "where the defaults fail, nothing can be compared with them";
-}
-
 TEST(TuneSearch, NeverReturnsAnythingWorseThanTheDefaultWhateverTheNoise) {
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -168,27 +157,6 @@ TEST(Tune, EachPlaceIsTunedForItself) {
       EXPECT_NEAR(relaxation_of(place.settings), place.limit < 0.005 ? fails_above - 0.05 : 1.7,
                   0.1)
           << place.limit;
-  }
-}
-
-// The best step with a setting is far from the default's, and the default fails at coarse steps.
-TEST(Tune, FindsBestStepsThatLieFarApart) {
-  const auto with_settings = [](const PointSpec& spec) {
-    return relaxation_of(spec.settings) > 1.5;
-  };
-  FakeMachine machine{[=](const PointSpec& spec) {
-                        const double off = std::log2(spec.step * (with_settings(spec) ? 25 : 250));
-                        return (with_settings(spec) ? 0.1 : 1) * (1 + off * off);
-                      },
-                      [=](const PointSpec& spec) {
-                        return !with_settings(spec) && spec.step > 0.02 ? PointStatus::not_converged
-                                                                        : PointStatus::ok;
-                      }};
-  const TunedEntry entry = tuned(machine);
-  const double off = std::log2(250.0 / 200);  // of the ladder's step next to 1/250 s
-  for (const TunedPlace& place : entry.places) {
-    EXPECT_GT(relaxation_of(place.settings), 1.5);
-    EXPECT_NEAR(place.gain(), 10 * (1 + off * off), 1e-6);
   }
 }
 

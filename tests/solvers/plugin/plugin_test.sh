@@ -72,7 +72,7 @@ use() {
   esac
   "$bench" "$1" "${words[@]}" <point.txt
 }
-((SANITIZED)) || while read -r verb <&3; do  # minutes with sanitizers
+while read -r verb <&3; do
   use "$verb" >verb.txt 2>&1
   code=$?
   ((code == 0)) || [[ $verb == ab && $code != [12] ]] ||  # whose verdict a busy machine may change
@@ -81,11 +81,10 @@ done 3< <("$bench" list verbs --json | /usr/bin/python3 -c 'import json, sys; pr
 for part in '</html>' '<style>' 'const points = '; do grep -q "$part" page.html || fail "the page of an installed bench lacks $part"; done
 
 kinds=$BUILD_FOLDER/tests
-if ((SANITIZED)); then quick=(--quick); else quick=(); fi  # the rest takes minutes with sanitizers
-"$bench" check --solver symmetric_sweeps --plugin "$plugin" "${quick[@]}" >check.txt 2>&1 ||
+"$bench" check --solver symmetric_sweeps --plugin "$plugin" >check.txt 2>&1 ||
   fail "a sound solver: $(cat check.txt)"
 grep -q '^symmetric_sweeps conforms: ' check.txt || fail "it must conform: $(cat check.txt)"
-((SANITIZED)) || grep -q '^PASS  hard cases' check.txt || fail "no hard cases: $(cat check.txt)"
+grep -q '^PASS  hard cases' check.txt || fail "no hard cases: $(cat check.txt)"
 "$bench" --plugin "$kinds/libplugin_broken.so" check --solver misfit --quick >check.txt 2>&1
 [[ $? == 4 ]] || fail "a broken solver must exit 4: $(cat check.txt)"
 grep -q '^FAIL  limit .*(allowed 1)$' check.txt && grep -q '^      -> .*edge [0-9]* is strained' check.txt &&
@@ -106,13 +105,11 @@ PYTHON
 code=$?
 grep -q '^sound conforms: ' check.txt && [[ $code == 0 ]] || fail "a sound solver without shear and collider: exit $code, $(cat check.txt)"
 
-# ---- Two versions of a plug-in, timed against each other; sanitizers distort times ----
-if ! ((SANITIZED)); then
-  "$bench" ab bench bench --old-plugin "$(sound plain)" --new-plugin "$(sound slow)" --scene drape \
-    --solver sound --filter 'strain:0.001/' --pairs 8 --confirm 8 --sample-seconds 0.02 >ab.txt 2>&1
-  # A busy machine may leave it open, but never says that they are the same.
-  [[ $? == [36] ]] && grep -Eq '^(SLOWER|AMBIGUOUS).*sound' ab.txt || fail "a plug-in that has become slower: $(cat ab.txt)"
-fi
+# ---- Two versions of a plug-in, timed against each other ----
+"$bench" ab bench bench --old-plugin "$(sound plain)" --new-plugin "$(sound slow)" --scene drape \
+  --solver sound --filter 'strain:0.001/' --pairs 8 --confirm 8 --sample-seconds 0.02 >ab.txt 2>&1
+# A busy machine may leave it open, but never says that they are the same.
+[[ $? == [36] ]] && grep -Eq '^(SLOWER|AMBIGUOUS).*sound' ab.txt || fail "a plug-in that has become slower: $(cat ab.txt)"
 "$bench" --plugin "$(sound plain)" --sweep strain --profile quick --scene chain --solver sound --filter 'strain:0.1/' --untimed \
   --no-plots --out sound.json >sweep.txt 2>&1 || fail "a sound solver's sweep: $(cat sweep.txt)"
 /usr/bin/python3 -c 'import json; print(json.dumps(json.load(open("sound.json"))["points"][0]))' |
