@@ -110,8 +110,9 @@ class Shake final : public VelocityFilter {
                     "J W J^T at the end of the step is not positive definite");
     }
     x_factored_ = x;
-    factored_ = !contacts;         // which will be others in the next step
-    edges.rate(u_start_, v, mu_);  // J v
+    factored_ = !contacts;  // which will be others in the next step
+    if (contacts) contacts->keep_on_planes(x, v);
+    edges.rate(u_start_, v, mu_);  // J v, of what planes leave
     if (!system_.solve(mu_, work)) return refuse(Status::singular, 0, edges, x, no_solution);
     edges.apply(u_start_, mu_, v);
     if (contacts) contacts->keep_on_planes(x, v);
@@ -237,8 +238,7 @@ class Rattle final : public Stepper {
         if (!contacts->holds(c)) continue;
         const int i = contacts->vertex(c);
         if (friction) v.col(i) += (contacts->candidate().col(i) - candidate_.col(i)) * (1 / h);
-        v.col(i) =
-            contacts->end_velocity(c, x.col(i), (x.col(i) - start.x.col(i)) * (1 / h), v.col(i));
+        v.col(i) = contacts->end_velocity(c, (x.col(i) - start.x.col(i)) * (1 / h), v.col(i));
       }
     }
     phases_.unconstrained += stopwatch();

@@ -59,8 +59,7 @@ class MidpointStepper final : public FilterStepper {
         const int i = contacts_->vertex(contact);
         if (friction)
           v.col(i) += (1 - rho_) / h * (contacts_->candidate().col(i) - candidate_.col(i));
-        v.col(i) =
-            contacts_->end_velocity(contact, x.col(i), (x.col(i) - start.x.col(i)) / h, v.col(i));
+        v.col(i) = contacts_->end_velocity(contact, (x.col(i) - start.x.col(i)) / h, v.col(i));
       }
     }
     for (const int vertex : problem_->pinned()) v.col(vertex).setZero();

@@ -18,9 +18,6 @@ constexpr double room = 0.1;
 // Weight of the last step's push by edges in the expected one; less for a vertex that passes
 // several edges in a step. A larger weight lets friction and edges drive each other.
 constexpr double newest = 0.1;
-// A vertex that starts to slide ends a step at twice its mean velocity; one that friction stops is
-// left with none of it.
-constexpr double steady = 1.5;
 
 }  // namespace
 
@@ -29,6 +26,7 @@ Contacts::Contacts(const Problem& problem)
       friction_(problem.collider()->friction()),
       vertex_(problem.vertices()),
       place_(problem.vertices(), -1),
+      stopped_(problem.vertices(), 0),
       obstacle_(problem) {
   const double length = problem.constraints() > 0 ? problem.shortest_rest_length() : 0;
   tolerance_ = length > 0 ? invisible * length : invisible_point;
@@ -46,6 +44,7 @@ Contacts::Contacts(const Problem& problem)
 void Contacts::begin(const Positions& x_start, double time, double h) {
   const Timing measured = timing();
   for (int c = 0; c < count_; ++c) place_[vertex_[c]] = -1;
+  std::fill(stopped_.begin(), stopped_.end(), 0);
   count_ = 0;
   start_ = &x_start;
   h_ = h;
@@ -134,12 +133,13 @@ Eigen::Vector3d Contacts::carried(int vertex) const {
   return problem_.body_motion() ? carry_(start) : start;
 }
 
-// Coulomb's friction of a push on a vertex with this displacement.
-void Contacts::take_friction(const ContactPlane& plane, double push,
+// Coulomb's friction of a push on a vertex with this displacement; whether it is all taken.
+bool Contacts::take_friction(const ContactPlane& plane, double push,
                              const Eigen::Vector3d& displacement, Positions& x) const {
   const Eigen::Vector3d slide = displacement - plane.normal.dot(displacement) * plane.normal;
   const double length = slide.norm(), most = friction_ * push;
   if (length > 0) x.col(plane.vertex) -= std::min(1.0, most / length) * slide;
+  return most >= length;
 }
 
 void Contacts::apply_friction(Positions& x0, WorkCounters& work) {
@@ -152,7 +152,7 @@ void Contacts::apply_friction(Positions& x0, WorkCounters& work) {
     put(plane, work);
     const int v = plane.vertex;
     const double push = plane.offset - plane.normal.dot(expected_.col(v));
-    take_friction(plane, push, x0.col(v) + scale * pulling_.col(v) - carried(v), x0);
+    stopped_[v] = take_friction(plane, push, x0.col(v) + scale * pulling_.col(v) - carried(v), x0);
   }
   candidate_ = x0;
 }
@@ -194,15 +194,10 @@ void Contacts::keep_on_planes(const Positions& x, Positions& v) const {
   }
 }
 
-Eigen::Vector3d Contacts::end_velocity(int contact, const Eigen::Vector3d& x,
-                                       const Eigen::Vector3d& mean,
+Eigen::Vector3d Contacts::end_velocity(int contact, const Eigen::Vector3d& mean,
                                        const Eigen::Vector3d& own) const {
-  const Eigen::Vector3d n = normal(contact), change = own - mean;
-  Eigen::Vector3d slide = mean;  // over the obstacle
-  if (problem_.body_motion()) slide -= (x - carry_.inverse()(x)) / h_;
-  const auto along = [&n](const Eigen::Vector3d& v) { return Eigen::Vector3d(v - n.dot(v) * n); };
-  const bool goes_on = along(change).norm() <= steady * along(slide).norm();
-  return goes_on ? Eigen::Vector3d(mean + along(change)) : mean;
+  if (stopped_[vertex_[contact]]) return mean;
+  return own - normal(contact).dot(own - mean) * normal(contact);
 }
 
 // With friction of this push, unless contacts were kept inside the solve and friction came before.

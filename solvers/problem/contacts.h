@@ -72,11 +72,11 @@ class Contacts {
   // that holds them, as it moves.
   void keep_on_planes(const Positions& x, Positions& v) const;
 
-  // The velocity at the end of a step, at x, of the vertex that a contact holds: `mean` over the
-  // step, `own` by the stepper's formula. Along the normal it is the mean one, so that nothing
-  // bounces. Along the surface, where friction and weight go on acting, it is the stepper's own,
-  // unless friction has stopped or turned the vertex in this step.
-  Eigen::Vector3d end_velocity(int contact, const Eigen::Vector3d& x, const Eigen::Vector3d& mean,
+  // The velocity at the end of a step of the vertex that a contact holds: `mean` over the step,
+  // `own` by the stepper's formula. Along the normal it is the mean one, so that nothing bounces.
+  // Along the surface, where friction and weight go on acting, it is the stepper's own, unless
+  // friction has stopped the vertex in this step.
+  Eigen::Vector3d end_velocity(int contact, const Eigen::Vector3d& mean,
                                const Eigen::Vector3d& own) const;
 
   // The end of every step: leaves no vertex inside.
@@ -137,7 +137,7 @@ class Contacts {
   double value(Number number, int contact) const { return numbers_[number][contact]; }
   void put(const ContactPlane& plane, WorkCounters& work);
   Eigen::Vector3d carried(int vertex) const;
-  void take_friction(const ContactPlane& plane, double push, const Eigen::Vector3d& displacement,
+  bool take_friction(const ContactPlane& plane, double push, const Eigen::Vector3d& displacement,
                      Positions& x) const;
 
   const Problem& problem_;
@@ -153,6 +153,7 @@ class Contacts {
   std::vector<int> place_;                            // of a vertex's contact, or -1
   Obstacle obstacle_;
   std::vector<ContactPlane> found_;
+  std::vector<char> stopped_;  // by vertex: friction has taken all of its slide in this step
   // With friction only: the candidate after it, where edges are expected to take it, and what they
   // have done to vertices, m/s^2: in the last step; along surfaces; towards them.
   Positions candidate_, expected_, before_, pulling_, pressing_;

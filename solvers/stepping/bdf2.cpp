@@ -39,7 +39,7 @@ void Bdf2History::add_step(const State& start, double h, const Positions& x,
     if (!contacts->holds(contact)) continue;
     const int i = contacts->vertex(contact);
     const Eigen::Vector3d n = contacts->normal(contact), mean = (x.col(i) - start.x.col(i)) / h;
-    v.col(i) = contacts->end_velocity(contact, x.col(i), mean, v.col(i));
+    v.col(i) = contacts->end_velocity(contact, mean, v.col(i));
     if (v.col(i) == mean) {
       x_.col(i) = start.x.col(i);
       v_.col(i) = mean;

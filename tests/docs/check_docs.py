@@ -196,20 +196,21 @@ def orders_of(words: str) -> str:
 
 
 def steps_of(words: str) -> str:
-    """Milliseconds for a simulated second and the largest error in percent; a run that failed has its status."""
-    file, limit, *steps = words.split()
-    points = [p for p in json_of(ROOT / file)["points"] if p["strain_limit"] == float(limit) and not p["contestant"].endswith("_again")]
+    """Milliseconds for a simulated second and the largest error in percent, or the status of a failure; of further limits, the last step."""
+    file, limits, *steps = words.split()
+    columns = [(limit, step) for i, limit in enumerate(limits.split(",")) for step in (steps[-1:] if i else steps)]
+    points = [p for p in json_of(ROOT / file)["points"] if not p["contestant"].endswith("_again")]
 
-    def text(contestant: str, step: str) -> str:
+    def text(contestant: str, limit: str, step: str) -> str:
         for p in points:
-            if p["contestant"] == contestant and math.isclose(p["step"], float(step)):
+            if p["contestant"] == contestant and p["strain_limit"] == float(limit) and math.isclose(p["step"], float(step)):
                 if p["status"] != "ok" or p["error"]["trajectory"] is None:
                     return p["status"]
                 return f"{1e3 * p['seconds_per_simulated_second']['min']:.3g}, {100 * p['error']['trajectory']:.2g} %"
         return "-"
 
-    return markdown(["contestant", *(f"1/{1 / float(step):g} s" for step in steps)],
-                    [[f"`{contestant}`", *(text(contestant, step) for step in steps)] for contestant in dict.fromkeys(p["contestant"] for p in points)])
+    return markdown(["contestant", *(f"1/{1 / float(step):g} s" + f", {100 * float(limit):g} %" * ("," in limits) for limit, step in columns)],
+                    [[f"`{contestant}`", *(text(contestant, *column) for column in columns)] for contestant in dict.fromkeys(p["contestant"] for p in points)])
 
 
 def errors_of(words: str) -> str:
@@ -228,8 +229,7 @@ def errors_of(words: str) -> str:
                     [[f"`{c}`", f"1/{1 / step:g} s", *(text(points.get((c, step)), time) for time in fifths)] for c in contestants for step in steps])
 
 
-BLOCKS = {"references": references, "bench list": table_of, "folders of": folders_of, "methods": methods_of, "orders": orders_of, "gaps": gaps_of, "steps": steps_of,
-          "errors": errors_of}
+BLOCKS = {"references": references, "bench list": table_of, "folders of": folders_of, "methods": methods_of, "orders": orders_of, "gaps": gaps_of, "steps": steps_of, "errors": errors_of}
 
 
 def with_tables(text: str) -> str:

@@ -10,8 +10,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 tree=$PWD/tree
 fail() { echo "extending_test: $*" >&2; exit 1; }
 
-rm -rf "$tree"
-mkdir "$tree"
+rm -rf "$tree" && mkdir "$tree"
 (cd "$root" && tar c CMakeLists.txt CMakePresets.json cmake configs harness plots results/references solvers) | tar x -C "$tree"
 
 /usr/bin/python3 - "$root/docs/extending.md" "$tree" <<'PYTHON'

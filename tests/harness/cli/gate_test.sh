@@ -80,8 +80,7 @@ edit again.json other.json '[p.update(id=p["id"] + "0") for p in d["points"]]'
 exits 5 'no point in common' compare baseline.json other.json
 
 # Bad input.
-echo '{"schema": "another"}' >wrong.json
-echo '{"schema": "inextensible-stability/1"}' >hard.json
+echo '{"schema": "another"}' >wrong.json && echo '{"schema": "inextensible-stability/1"}' >hard.json
 edit base.json part.json 'd["complete"] = False'
 while IFS='|' read -r words arguments; do
   refused "$words" $arguments
