@@ -26,8 +26,8 @@ Contacts::Contacts(const Problem& problem)
       friction_(problem.collider()->friction()),
       vertex_(problem.vertices()),
       place_(problem.vertices(), -1),
-      stopped_(problem.vertices(), 0),
-      obstacle_(problem) {
+      obstacle_(problem),
+      stopped_(problem.vertices(), 0) {
   const double length = problem.constraints() > 0 ? problem.shortest_rest_length() : 0;
   tolerance_ = length > 0 ? invisible * length : invisible_point;
   margin_ = margin * length;
