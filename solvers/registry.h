@@ -22,7 +22,7 @@ bool is_built_in(std::string_view name);  // a row of registry.cpp
 // Null if there is none. A method in its published time stepper has two names: gauss_seidel and
 // gauss_seidel@backward_euler.
 const Backend* find_backend(std::string_view name);
-// Why a name method@stepper is none of backends() although the method is; else empty.
+// Why method@stepper is not in backends() although its method is; otherwise empty.
 std::string why_no_pair(std::string_view name);
 
 // Throws std::invalid_argument for an unknown backend, setting or choice, a strain limit that is

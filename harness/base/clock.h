@@ -13,7 +13,7 @@ inline double since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// Processor time of this thread, s. Takes a call of the system, some hundred nanoseconds.
+// Processor time of this thread, s. Costs a system call, a few hundred nanoseconds.
 inline double thread_seconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

@@ -3,10 +3,10 @@
 // in mid-drape (above 150 vertices a side soon after its start) and a chain in mid-swing, at the
 // positions that a filter gets. Items are constrained edges, or vertices. collision_pass and the
 // solves include a copy of their input, a few percent.
-// floor/...: what the core can do at best. floor_ratio holds a pass of strain limiting over all
-// edges against the square root and the division that an edge costs at least; of_peak and
-// of_bandwidth hold flops of a factorization against those of a dense product, and bytes of the
-// factor, read twice by a solve, against the bandwidth at which an array of the factor's size is
+// floor/...: what the core can do at best. floor_ratio compares a pass of strain limiting over all
+// edges with the square root and the division that an edge costs at least; of_peak and
+// of_bandwidth compare flops of a factorization with those of a dense product, and bytes of the
+// factor, read twice by a solve, with the bandwidth at which an array of the factor's size is
 // read (the library prints such ratios with "/s" behind them).
 #include <benchmark/benchmark.h>
 

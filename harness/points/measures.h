@@ -13,7 +13,7 @@ namespace harness {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();  // written as null
 
-// A distance to the reference is certainly an error of the run if it is above so many gaps.
+// A distance to the reference is certainly an error of the run if it is above this many gaps.
 constexpr double sure_gaps = 3;
 
 // Levels of error over the scene's size that an answer may be asked for at, loose to tight, and the

@@ -52,7 +52,7 @@ nlohmann::json tuned_document(const std::vector<TunedEntry>& entries);
 void tune(Contestants& all, const Tuned& tuned, const std::string& kind,
           const std::map<std::string, inextensible::Settings>& given = {});
 
-// The scenes that settings are searched on, one a kind, each at two sizes and three limits. No
+// The scenes on which settings are searched for, one a kind, each at two sizes and three limits. No
 // reported result has these sizes. Without contestants.
 const std::vector<SweepSpec>& tuning_scenes();
 

@@ -23,7 +23,7 @@ Runner with_references(const Runner& inner, std::shared_ptr<ReferenceFolder> ref
 Runner isolated(const Runner& inner, double memory);
 
 // What the journal knows is not run, and what is run is added to it. A sweep that goes on is run
-// once more from its beginning, so that every decision falls as it fell before, and the rest
+// once more from its beginning, so that every decision comes out as before, and the rest
 // follows. Keys: key_of(spec) for a point with its first sample; that and " #i" for its i-th
 // repetition. The journal must outlive the runner.
 Runner journaled(const Runner& inner, Journal& journal);

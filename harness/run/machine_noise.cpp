@@ -43,7 +43,7 @@ QuietProbe& quiet_probe() {
   return probe;
 }
 
-// Takes about 50 ms, to notice other users of the processor, who get turns of some milliseconds.
+// Takes about 50 ms, to notice other users of the processor, who get turns of a few milliseconds.
 void NoiseProbe::sample() {
   constexpr int runs = 50;
   work_();

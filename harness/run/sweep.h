@@ -1,4 +1,4 @@
-// Runs a suite's sweeps. For each (scene, size, limit, solver) the best step is searched
+// Runs a suite's sweeps. For each (scene, size, limit, solver) the best step is found
 // (step_search.h; a step sweep runs the whole ladder). Then the points that may be best (in a step
 // sweep: all that ran to the end) are repeated in a shuffled order, and the best are chosen from
 // all samples.

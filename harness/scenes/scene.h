@@ -41,8 +41,8 @@ struct Scene {
   bool conserves_energy = false;  // nothing dissipates: energy drift is an error
   // How far total energy may rise above the start's, over weight times size and the kinetic energy
   // at the start: enough to lift the whole by 5 % of its size. Runs that blow up gain ten times as
-  // much or go on to; what methods gain by truncation alone, at the coarsest steps of the ladders,
-  // stays below.
+  // much, or soon will; what methods gain by truncation alone, at the coarsest steps of the
+  // ladders, stays below.
   double energy_bound = 0.05;  // infinite where a body that moves does work
   // Whether methods whose velocities are of the middle of a step start half a step back.
   bool staggered = true;

@@ -257,7 +257,7 @@ Findings momentum(const Examinee& solver) {
              text("changes by ", coarse, " of its scale at h, ", fine, " at h/4 (allowed ", allowed,
                   ": it vanishes with the step)"),
              "corrections must act along their edge, at its direction within the step; about "
-             "the origin or along fixed axes they do torque")};
+             "the origin or along fixed axes they exert a torque")};
 }
 
 // ---- Steps that no method can take ----

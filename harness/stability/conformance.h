@@ -21,7 +21,7 @@ struct ConformanceOptions {
   std::uint64_t seed = 1;
   bool hard_cases = true;                                       // the longest part, up to minutes
   std::function<void(const Finding&)> finding = [](auto&&) {};  // as soon as it is known
-  std::function<bool()> interrupted = nullptr;                  // asked some times a second
+  std::function<bool()> interrupted = nullptr;                  // asked several times a second
 };
 
 // The checks in the order in which they ran, each in a process of its own. `solver` must be

@@ -34,7 +34,7 @@ struct HardCase {
   std::string what;  // one line
   std::function<Trial()> build;
   double value = unknown;                      // of a series of cases
-  std::vector<Expectation> expectations = {};  // the last one is about everyone
+  std::vector<Expectation> expectations = {};  // the last one is about all methods
 
   // The first expectation about the solver. A method that promises no strain limit need not notice
   // that no solution satisfies it: where others refuse, it may survive.

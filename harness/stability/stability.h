@@ -38,7 +38,7 @@ struct ExpectationCounts {
 
 // ---- Beside the matrix ----
 
-// A scene in which the largest stable step is searched, for one simulated second.
+// A scene for which the largest stable step is sought over one simulated second.
 struct StabilityScene {
   const char *name, *type;
   int n;

@@ -223,7 +223,7 @@ Backend admm_row() {
             SearchRange{3, 100}},
            {"relaxation", 1.0, "alpha, of the edges' differences", relaxation_range,
             SearchRange{1, 1.9}},
-           // So much of what pulls at vertices is not yet what edges do.
+           // The part of the forces on vertices that edges do not yet account for.
            {"direction_tolerance", 1.0,
             "last move of an edge's projection, times penalty, in strain limit times rest length",
             positive, tunable_direction_tolerance}},

@@ -16,7 +16,7 @@ namespace inextensible {
 class Palette {
  public:
   explicit Palette(std::size_t places) : taken_(places) {}
-  // The first color that is taken at none of these, and now at all.
+  // The first color that is free at all of these places; takes it there.
   int take(std::span<const int> places);
 
  private:

@@ -1,7 +1,7 @@
 // Vertex block descent (Chen, Liu, Yang and Yuksel 2024): the implicit springs' energy, backward
 // Euler's, lowered by a given number of passes that move one vertex at a time, x_i += H_i^-1 f_i.
-// It has no strain limit of its own; and as passes end before the minimum, less stiffness than
-// asked for is what shows.
+// It has no strain limit of its own. Since the passes stop short of the minimum, springs behave as
+// if they were softer than requested.
 //
 // A spring's negative stiffness across its direction is dropped, as implicit_springs does: the
 // paper's Hessian is indefinite under compression. No line search, as in the paper. Momentum is
