@@ -44,7 +44,6 @@ Contacts::Contacts(const Problem& problem)
 void Contacts::begin(const Positions& x_start, double time, double h) {
   const Timing measured = timing();
   for (int c = 0; c < count_; ++c) place_[vertex_[c]] = -1;
-  std::fill(stopped_.begin(), stopped_.end(), 0);
   count_ = 0;
   start_ = &x_start;
   h_ = h;
@@ -71,6 +70,7 @@ void Contacts::put(const ContactPlane& plane, WorkCounters& work) {
     place = count_++;
     vertex_[place] = plane.vertex;
     value(pushed, place) = 0;
+    stopped_[place] = 0;
     ++work.contacts;
   }
   value(normal_x, place) = plane.normal.x();
@@ -152,7 +152,8 @@ void Contacts::apply_friction(Positions& x0, WorkCounters& work) {
     put(plane, work);
     const int v = plane.vertex;
     const double push = plane.offset - plane.normal.dot(expected_.col(v));
-    stopped_[v] = take_friction(plane, push, x0.col(v) + scale * pulling_.col(v) - carried(v), x0);
+    stopped_[place_[v]] =
+        take_friction(plane, push, x0.col(v) + scale * pulling_.col(v) - carried(v), x0);
   }
   candidate_ = x0;
 }
@@ -196,7 +197,7 @@ void Contacts::keep_on_planes(const Positions& x, Positions& v) const {
 
 Eigen::Vector3d Contacts::end_velocity(int contact, const Eigen::Vector3d& mean,
                                        const Eigen::Vector3d& own) const {
-  if (stopped_[vertex_[contact]]) return mean;
+  if (stopped(contact)) return mean;
   return own - normal(contact).dot(own - mean) * normal(contact);
 }
 

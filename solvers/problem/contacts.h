@@ -117,6 +117,7 @@ class Contacts {
     return {value(normal_x, contact), value(normal_y, contact), value(normal_z, contact)};
   }
   bool holds(int contact) const { return push(contact) > 0; }
+  bool stopped(int contact) const { return stopped_[contact]; }  // friction took all of its slide
   double push(int contact) const { return value(pushed, contact); }  // m, along the normal
   void set_push(int contact, double push) { value(pushed, contact) = push; }
   // Height of its vertex at x above the plane, m.
@@ -153,7 +154,7 @@ class Contacts {
   std::vector<int> place_;                            // of a vertex's contact, or -1
   Obstacle obstacle_;
   std::vector<ContactPlane> found_;
-  std::vector<char> stopped_;  // by vertex: friction has taken all of its slide in this step
+  std::vector<char> stopped_;
   // With friction only: the candidate after it, where edges are expected to take it, and what they
   // have done to vertices, m/s^2: in the last step; along surfaces; towards them.
   Positions candidate_, expected_, before_, pulling_, pressing_;

@@ -40,7 +40,7 @@ void Bdf2History::add_step(const State& start, double h, const Positions& x,
     const int i = contacts->vertex(contact);
     const Eigen::Vector3d n = contacts->normal(contact), mean = (x.col(i) - start.x.col(i)) / h;
     v.col(i) = contacts->end_velocity(contact, mean, v.col(i));
-    if (v.col(i) == mean) {
+    if (contacts->stopped(contact)) {
       x_.col(i) = start.x.col(i);
       v_.col(i) = mean;
     } else {

@@ -222,8 +222,7 @@ def errors_of(words: str) -> str:
     fifths = [next(iter(points.values()))["duration"] * i / 5 for i in range(1, 6)]
 
     def text(point: dict | None, time: float) -> str:
-        series = point["error"]["error_series"] if point else []
-        return next((f"{100 * error:.2g}" for at, error, *_ in series if math.isclose(at, time)), "-")
+        return next((f"{100 * e:.2g}" for at, e, *_ in (point["error"]["error_series"] if point else []) if math.isclose(at, time)), "-")
 
     return markdown(["contestant", "step", *(f"{time:g} s" for time in fifths)],
                     [[f"`{c}`", f"1/{1 / step:g} s", *(text(points.get((c, step)), time) for time in fifths)] for c in contestants for step in steps])

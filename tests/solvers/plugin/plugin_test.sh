@@ -81,8 +81,7 @@ done 3< <("$bench" list verbs --json | /usr/bin/python3 -c 'import json, sys; pr
 for part in '</html>' '<style>' 'const points = '; do grep -q "$part" page.html || fail "the page of an installed bench lacks $part"; done
 
 kinds=$BUILD_FOLDER/tests
-"$bench" check --solver symmetric_sweeps --plugin "$plugin" >check.txt 2>&1 ||
-  fail "a sound solver: $(cat check.txt)"
+"$bench" check --solver symmetric_sweeps --plugin "$plugin" >check.txt 2>&1 || fail "a sound solver: $(cat check.txt)"
 grep -q '^symmetric_sweeps conforms: ' check.txt || fail "it must conform: $(cat check.txt)"
 grep -q '^PASS  hard cases' check.txt || fail "no hard cases: $(cat check.txt)"
 "$bench" --plugin "$kinds/libplugin_broken.so" check --solver misfit --quick >check.txt 2>&1
