@@ -167,8 +167,7 @@ def methods_of(words: str) -> str:
             return "-"
         best = min(own, key=own.__getitem__)
         shown = f"{own[method]:.3g}" if method in own else "-"
-        if best != method:
-            shown += f", {own[best]:.3g} @{best.partition('@')[2]}"
+        shown += f", {own[best]:.3g} @{best.partition('@')[2]}" * (best != method)
         return f"**{shown}**" if method == leader else shown
 
     methods = {row.partition("@")[0] for column in times for row in column}

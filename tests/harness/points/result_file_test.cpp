@@ -57,8 +57,7 @@ TEST(ResultFile, OfSweepsFitsTheSchema) {
     limits.timed = false;  // one run a sample: nobody reads the times
     return run_point(spec, limits);
   };
-  SweepFilters filters;
-  filters.solver = Pattern("--solver", "fast_projection.*|implicit_springs");
+  const SweepFilters filters{Pattern("--solver", "fast_projection.*|implicit_springs"), {}, {}};
   const SweepOutcome outcome = run_sweep(suite, plan(suite, filters), {}, untimed);
   const json document = document_of(suite, outcome.points);
   EXPECT_EQ(misfit(document, "result"), "");

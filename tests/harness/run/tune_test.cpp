@@ -84,6 +84,8 @@ TEST(TuneSearch, NeverReturnsAnythingWorseThanTheDefaultWhateverTheNoise) {
     EXPECT_LE(calls, 20);
     EXPECT_LE(truth(found.values), truth({1, 0.1, 0}));
   }
+  const auto fails = [](const Values&, double) { return std::optional<double>(); };
+  EXPECT_EQ(tune_values(numbers(), fails, 40).evaluations, 1) << "nothing to compare it with";
 }
 
 TEST(TuneSearch, ValuesStayInTheirRangeAndComeBackFromTheirPosition) {
