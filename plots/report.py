@@ -158,7 +158,7 @@ def page(results: dict[Path, Result], found: list[Json], claims: list[Json]) -> 
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(prog="report.py", description="One page that tells what result files found.")
+    parser = argparse.ArgumentParser(prog="report.py", description="Write one page with the findings of result files.")
     parser.add_argument("report", type=Path, metavar="report.json", help="results, findings and claims, as bench report gives them")
     parser.add_argument("--out", type=Path, required=True, metavar="report.html")
     options = parser.parse_args()

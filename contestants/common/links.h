@@ -15,7 +15,7 @@ namespace engines {
 
 // Link i ends at vertex[i], of mass[i], and begins at vertex[i - 1]; link 0 begins at the pin.
 struct Links {
-  // Throws std::invalid_argument, saying why, for a problem that is no such chain.
+  // Throws std::invalid_argument, saying why, for a problem that is not such a chain.
   explicit Links(const inextensible::Problem& problem);
 
   int count() const { return static_cast<int>(vertex.size()); }

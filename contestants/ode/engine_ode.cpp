@@ -3,7 +3,7 @@
 // its end one that takes the part `erp` of each elongation back, along directions at its start.
 // They come from a factorization of the dense matrix (dWorldStep), or from passes of successive
 // over-relaxation in random order, from 0 (dWorldQuickStep). Damping and disabling are off, there
-// are no geometries.
+// are not geometries.
 // Shear, bending and drag, where a scene has them, are forces that the plug-in gives to bodies.
 // Loops: over joints, `iterations` passes; "direct" m^3 / 6 for m edges.
 //

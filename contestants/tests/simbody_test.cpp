@@ -13,7 +13,7 @@ TEST(Simbody, LeavesThePlane) {
 }
 TEST(Simbody, TakesChainsOnly) { expect_chains_only(solver); }
 
-// The step of the harness is no bound of the error, the accuracy is.
+// The accuracy bounds the error, not the step of the harness.
 TEST(Simbody, ErrorFollowsAccuracy) {
   for (const char* integrator : {"merson", "fehlberg", "verlet"}) {
     const auto error = [integrator](double accuracy) {

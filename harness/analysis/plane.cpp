@@ -35,7 +35,7 @@ std::string why_empty(const std::vector<Point>& here, double level, double known
   if (!any([](const Point& p) { return !p.measures().reference.empty(); }))
     return "there is no reference";
   return any([](const Point& p) { return !p.measures().error_series.empty(); })
-             ? "the reference is not sure to " + percent(level)
+             ? "the reference is not known to within " + percent(level)
              : "the file has no errors";
 }
 

@@ -148,7 +148,7 @@ Ending run_once(const KnownAnswer& answer, const AnswerScene& at, const Backend&
   }
   if (ending.status == PointStatus::ok) {
     ending.value = answer.reading(at, motion);
-    if (!std::isfinite(ending.value)) ending.detail = "the run does not tell";
+    if (!std::isfinite(ending.value)) ending.detail = "the run does not show it";
   }
   return ending;
 }
@@ -172,7 +172,7 @@ Ending run_calibrated(const KnownAnswer& answer, const Backend& backend, double 
 
 // The order of accuracy from the last two deviations, at a step and its half. Runs of a continuum
 // do not tend to the exact value: differences between deviations at three steps take their place.
-// What the strain limit permits is no error of the method: near it no order shows.
+// What the strain limit permits is not an error of the method: close to it no order can be seen.
 double order_of(const KnownAnswer& answer, std::vector<double> deviations) {
   if (answer.continuum)
     std::adjacent_difference(deviations.begin(), deviations.end(), deviations.begin());

@@ -164,7 +164,7 @@ std::string read_file(const std::string& path, const std::string& what) {
 
 std::string output_path(const std::string& path) {
   if (is_standard_output(path)) return path;
-  if (path.empty()) throw UsageError("'' is no file; --out names one");
+  if (path.empty()) throw UsageError("'' is not a file name; --out takes one");
   fs::path place(path);
   std::error_code error;
   for (int link = 0; fs::is_symlink(place, error) && !is_special(place); ++link) {
@@ -182,7 +182,7 @@ std::string output_path(const std::string& path) {
 std::string regular_output_path(const std::string& path) {
   std::string place = output_path(path);
   if (is_standard_output(place) || is_special(place))
-    throw UsageError("'" + path + "' is no regular file; --out names one, which stays");
+    throw UsageError("'" + path + "' is not a regular file; --out names one to keep");
   return place;
 }
 

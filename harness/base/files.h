@@ -96,7 +96,7 @@ pid_t lock_holder(int file);
 void open_standard_streams();
 
 // While it lives, what is written to standard output goes to standard error: what foreign code
-// prints is mixed with no result. Throws FileError if there is no descriptor left.
+// prints is not mixed with a result. Throws FileError if there is no descriptor left.
 class OutputToError {
  public:
   OutputToError();

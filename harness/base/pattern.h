@@ -15,7 +15,7 @@ namespace harness {
 // Letters match whatever their case.
 class Pattern {
  public:
-  // Throws UsageError, naming the option, if it is no regular expression.
+  // Throws UsageError, naming the option, if it is not a regular expression.
   Pattern(const std::string& option, const std::string& text);
 
   bool matches(const std::string& text) const;   // from its beginning to its end

@@ -14,7 +14,7 @@ namespace harness {
 struct Table {
   std::vector<std::string> head;  // may be empty on a terminal
   std::vector<std::vector<std::string>> rows = {};
-  std::size_t names = 1;  // so many of the first columns hold names, which Markdown sets as code
+  std::size_t names = 1;  // this many of the first columns hold names, which Markdown sets as code
 };
 
 inline void print_markdown(std::ostream& out, const Table& table) {

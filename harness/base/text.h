@@ -5,10 +5,10 @@
 
 namespace harness {
 
-// With so many significant digits and no trailing zeros; six is the default of streams.
+// With this many significant digits and no trailing zeros; six is the default of streams.
 std::string number_text(double value, int digits = 6);
 
-// The number with so many significant digits.
+// The number with this many significant digits.
 double rounded_to(double value, int digits = 6);
 
 // With as many digits, six or more, as set it apart from `other`: "0.00010000002", not "0.0001",

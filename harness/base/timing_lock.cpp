@@ -32,8 +32,8 @@ TimingLock::TimingLock(bool wait) {
                     path = std::filesystem::temp_directory_path() / name;
   file_ = OpenFile(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
   if (!file_)
-    throw UsageError("cannot open '" + path + "', the lock on taking times: " +
-                     std::strerror(errno) + "; --untimed goes without");
+    throw UsageError("cannot open '" + path + "', the timing lock: " + std::strerror(errno) +
+                     "; --untimed goes without");
   while (!try_lock(file_.get())) {
     const pid_t other = lock_holder(file_.get());
     if (is_for_us(other)) {
@@ -42,9 +42,9 @@ TimingLock::TimingLock(bool wait) {
     }
     const std::string holder = other > 0 ? "process " + std::to_string(other) : "another process";
     if (interrupted()) throw Interrupted();
-    if (!wait) throw UsageError(holder + " is taking times on this machine");
+    if (!wait) throw UsageError(holder + " is timing runs on this machine");
     if (!waited_)
-      std::cerr << "bench: waiting for " << holder << ", which is taking times on this machine"
+      std::cerr << "bench: waiting for " << holder << ", which is timing runs on this machine"
                 << std::endl;
     waited_ = true;
     std::this_thread::sleep_for(std::chrono::milliseconds(200));

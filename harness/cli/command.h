@@ -122,9 +122,9 @@ Action verb(const Command& command) {
   VERB(show, false,                                                                               \
        "print a result file: which method is fastest within each strain limit and error")         \
   VERB(plot, false,                                                                               \
-       "draw the figures of a result file again; of several pieces of one sweep as one")          \
+       "redraw the figures of a result file, or of several pieces of one sweep together")         \
   VERB(report, false,                                                                             \
-       "write one page, to open offline: findings, ranks, points, figures and claims")            \
+       "write a page that opens offline: findings, ranks, points, figures and claims")            \
   VERB(answers, true, "compare each solver with exact answers (orbits, oscillations, falls)")     \
   VERB(film, false, "render a scene as stills or a film, or export it for ParaView and Blender")  \
   VERB(choose, false, "recommend a solver and a step for a scene, after a minute of measuring")   \

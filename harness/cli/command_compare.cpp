@@ -95,9 +95,10 @@ struct Baseline {
   int run() {
     const ComparedResult result = read_compared(files);
     if (result.baseline)
-      throw UsageError("'" + result.path + "' is not a result file, of which a baseline is made");
+      throw UsageError("'" + result.path + "' is not a result file; a baseline is made from one");
     if (!result.complete)
-      throw UsageError("'" + result.path + "' is of an interrupted run: no baseline");
+      throw UsageError("'" + result.path +
+                       "' comes from an interrupted run and cannot be a baseline");
     check_writable(out);
     write_atomically(out, document_text(baseline_document(result)));
     std::cout << out << ": " << result.points.size() << " points" << std::endl;
@@ -132,7 +133,7 @@ struct Program {
   // Throws unless this is a bench that has `point` and loads its plug-ins.
   void check() const {
     const ProgramResult help = Program{path, {}}.run({"point", "--help"});
-    if (help.exit_code == 127) throw UsageError("'" + path + "' is no program");
+    if (help.exit_code == 127) throw UsageError("'" + path + "' is not a program");
     if (help.exit_code != success || help.out.find("--samples") == std::string::npos)
       throw NotComparable("'" + path +
                           "' has no command `point`, which times single points: it was built from "
@@ -250,7 +251,7 @@ struct Ab : CompareOptions {
     const TimingLock lock(!no_wait);
     std::cerr << "looking for the best steps of " << before.path << " ..." << std::endl;
     std::vector<PairedPoint> points = best_points();
-    // One run of each tells whether their counters are comparable.
+    // One run of each shows whether their counters are comparable.
     Comparability can;
     const std::string old_print = run_one(before, points.front()).fingerprint;
     if (old_print.empty() || old_print != run_one(after, points.front()).fingerprint)

@@ -117,7 +117,7 @@ void add_timeout(const Command& to, double& timeout, const std::string& standard
 
 void add_no_wait(const Command& to, bool& no_wait) {
   to.flag("--no-wait", no_wait,
-          "stop instead of waiting if another program is taking times on this machine");
+          "stop instead of waiting if another program is timing runs on this machine");
 }
 
 std::vector<std::string> profiles() { return {"quick", "default", "paper", "large"}; }

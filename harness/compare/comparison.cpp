@@ -82,7 +82,7 @@ void note_failures(const ComparedPoint& base, const ComparedPoint& next, const G
 }
 
 // Which steps a search tried depends on times: one that only one result tried, or gave up because a
-// better one was known, is no evidence.
+// better one was known, is not evidence.
 class Tried {
  public:
   explicit Tried(const ComparedResult& result) {
@@ -131,7 +131,7 @@ std::vector<std::string> notes_of(const ComparedResult& base, const ComparedResu
   if (can.times() && can.drift > 0)
     notes.push_back("the machine's own speed varied by " + per_cent(std::exp(can.drift)) +
                     ": times that differ by less are undecided");
-  if (!next.complete) notes.push_back("'" + next.path + "' is of an interrupted run");
+  if (!next.complete) notes.push_back("'" + next.path + "' comes from an interrupted run");
   return notes;
 }
 
@@ -272,8 +272,8 @@ Comparison compare(const ComparedResult& base, const ComparedResult& next, const
     throw NotComparable("'" + base.path + "' and '" + next.path + "' have no point in common");
   if (untried > 0)
     comparison.notes.push_back(std::to_string(untried) +
-                               " steps were tried, or run to the end, in one of them only: their "
-                               "searches took other ways");
+                               " steps were tried, or run to the end, in only one of them: their "
+                               "searches went different ways");
   return comparison;
 }
 

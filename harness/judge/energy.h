@@ -65,7 +65,7 @@ class EnergyRecord {
   int gain_step_ = 0;
 };
 
-// Why a run of so many seconds fails the energy check; "": it passes. bound: of Scene.
+// Why a run of `seconds` fails the energy check; "": it passes. bound: of Scene.
 std::string energy_gained(const EnergyRecord& energy, double bound, double seconds);
 
 }  // namespace harness

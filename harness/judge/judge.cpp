@@ -70,11 +70,12 @@ void Judge::add_errors(Measures& measures) const {
   const int wanted = options_.reference->samples_at(headline_error);
   const std::string level = number_text(100 * headline_error) + " %";
   if (wanted == 0) {
-    measures.unknown_because = "the reference is not sure to " + level + " at any sample time";
+    measures.unknown_because =
+        "the reference is not known to within " + level + " at any sample time";
   } else if (at.samples < wanted) {
     measures.unknown_because = "the run ended after " + std::to_string(at.samples) + " of " +
                                std::to_string(wanted) +
-                               " samples at which the reference is sure to " + level;
+                               " samples at which the reference is known to within " + level;
   } else {
     measures.trajectory = at.distance;
     measures.trajectory_mean = at.mean;

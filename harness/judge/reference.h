@@ -69,7 +69,7 @@ Reference read_reference(const std::string& path, const std::string& scene = "")
 Reference reference_of(const nlohmann::json& document, const std::string& path,
                        const std::string& scene = "");
 
-// A path as rows of coordinates, rounded to so many parts of a metre; 0: not rounded.
+// A path as rows of coordinates, rounded to this many parts of a metre; 0: not rounded.
 nlohmann::json rows_of(const Path& path, double per_metre = 0);
 Path path_of(const nlohmann::json& rows);
 

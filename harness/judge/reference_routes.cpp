@@ -27,7 +27,7 @@ constexpr double visible_move = 1e-5;   // the same where a scene comes to rest
 constexpr double parted = 1e-2;         // gap at which a reference ends
 constexpr double pendulum_tolerance = 1e-13;
 constexpr std::size_t most_samples = 50;
-constexpr double usual_finest = sample_interval / 640;  // s, of scenes that are no pendulum
+constexpr double usual_finest = sample_interval / 640;  // s, for scenes other than pendulums
 
 struct Route {
   std::string solver;
@@ -59,11 +59,11 @@ const Route implicit_route{"fast_projection@bdf2", 1e-5, 1, one_projection};
 // Edges as stiff springs, solved with all other forces at once: strains of 1e-4 under the weight of
 // the whole scene.
 constexpr double spring_stiffness = 1e4;  // over the weight
-// Friction inside the solve is no smooth function of the start, and RATTLE's small steps along old
-// directions get stuck on it; the passes that correct it set the limit.
+// Friction inside the solve is not a smooth function of the start, and RATTLE's small steps along
+// old directions get stuck on it; the passes that correct it set the limit.
 const Route contact_inside_route{"fast_projection@bdf2", 1e-5, 1, some_passes};
 
-// The routes of a scene that is no pendulum, in steps of h seconds. The second one has the first
+// The routes of a scene that is not a pendulum, in steps of h seconds. The second one has the first
 // one's limit; they differ in the direction of constraint forces, the velocity's place in the step
 // and the linear solver. The third, of scenes with implicit forces, knows no constraints.
 struct Routes {

@@ -138,7 +138,7 @@ Contestants read_contestants(const json& solvers, const std::string& where) {
     Contestant contestant = read_contestant(entry, where);
     if (find_contestant(all, contestant.name) != all.end())
       throw UsageError(where + ": '" + contestant.name +
-                       "' is there twice; give each a \"name\" of its own");
+                       "' is listed twice; give each a \"name\" of its own");
     all.push_back(std::move(contestant));
   }
   return all;

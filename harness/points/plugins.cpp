@@ -29,7 +29,7 @@ EntryPoint entry_point(const std::string& path) {
   void* symbol = dlsym(library, "inextensible_plugin");
   if (!symbol)
     throw std::runtime_error(
-        "it is no plug-in: it has no function inextensible_plugin (solvers/plugin.h)");
+        "it is not a plug-in: it has no function inextensible_plugin (solvers/plugin.h)");
   return reinterpret_cast<EntryPoint>(symbol);
 }
 
@@ -58,7 +58,7 @@ Plugin add(const std::string& path) {
                 {},
                 table->optimized};
   if (!has_form(plugin.version, "[ -~]+"))
-    throw std::runtime_error("its version is no printable text");
+    throw std::runtime_error("its version is not printable text");
   const std::span rows(table->backends, table->backend_count);
   if (rows.empty()) throw std::runtime_error("it brings no solver");
   inextensible::add_backends(rows);

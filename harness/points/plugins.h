@@ -16,7 +16,7 @@ struct Plugin {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Plugin, file, version, solvers, optimized)
 
 // Adds the file's backends to the registry; at program start. Throws UsageError, having added
-// nothing, if it is no plug-in, was built unlike this program, or brings a solver that exists.
+// nothing, if it is not a plug-in, was built unlike this program, or brings a solver that exists.
 void load_plugin(const std::string& path);
 
 const std::vector<Plugin>& loaded_plugins();  // in the order of loading

@@ -25,7 +25,7 @@ void from_json(const json& from, PointStatus& status) {
   const auto row =
       std::ranges::find(point_statuses, from.get<std::string>(), &PointStatusInfo::name);
   if (row == point_statuses.end())
-    throw json::other_error::create(501, from.dump() + " is no status of a point", nullptr);
+    throw json::other_error::create(501, from.dump() + " is not the status of a point", nullptr);
   status = row->status;
 }
 

@@ -231,7 +231,7 @@ json joined(const std::vector<json>& documents) {
   std::set<std::string> taken;
   for (const json& document : documents) {
     if (document.value("schema", "") != all.value("schema", ""))
-      throw UsageError("results of different kinds of sweeps are no one table");
+      throw UsageError("results of different kinds of sweeps cannot be combined into one table");
     const json own = document.value(q95, json());
     const std::size_t before = all[rows].size();
     add_rows(all[rows], document.at(rows), document.value(again, json()), taken);

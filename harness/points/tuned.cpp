@@ -62,7 +62,7 @@ Tuned parse_tuned(const std::string& text, const std::string& file) {
     for (const TunedPlace& at : entry.places)
       check_settings(at.settings, place + ": 'settings'", backend);
     if (tuned.find(entry.kind, entry.solver))
-      throw UsageError(place + ": " + entry.kind + " and " + entry.solver + " stand there twice");
+      throw UsageError(place + ": " + entry.kind + " and " + entry.solver + " are listed twice");
     tuned.entries.push_back(std::move(entry));
   }
   tuned.hash = hash_of(tuned.entries);
@@ -131,7 +131,7 @@ json tuning_rule(const SweepSpec& scene, const inextensible::Backend& solver) {
 std::string rule_change(const TunedEntry& entry) {
   const auto scene = std::ranges::find(
       tuning_scenes(), entry.kind, [](const SweepSpec& s) { return find_scene(s.scene)->kind(); });
-  if (scene == tuning_scenes().end()) return "scene is not there, was " + entry.kind;
+  if (scene == tuning_scenes().end()) return "the scene, " + entry.kind + ", no longer exists";
   return difference(entry.rule, tuning_rule(*scene, *inextensible::find_backend(entry.solver)));
 }
 

@@ -162,7 +162,7 @@ void measure(PointResult& point, const PointRunner& runner, const inextensible::
   const Run last =
       a_sample && !disturbed ? sampler.record(std::move(judged)) : sampler.add(a_sample ? 1 : 0);
   if (!point.filter_samples.empty()) point.phases = sampler.phases;
-  point.status = last.status;  // without a time it is no result
+  point.status = last.status;  // without a time it is not a result
   point.detail = last.detail;
 }
 

@@ -49,7 +49,7 @@ struct Estimate {
 // repeated one. Mostly right within a factor of three.
 Estimate estimate(const Suite& suite, const std::vector<Search>& searches);
 
-// s. A point is no longer repeated once its runs have taken this long: disturbances average out
+// s. A point is not repeated further once its runs have taken this long: disturbances average out
 // within long runs.
 inline constexpr double repeat_for = 10;
 

@@ -48,7 +48,7 @@ double value_at(const TunedNumber& number, double position);
 
 struct TuneOptions {
   int budget = 40;       // evaluations at most, of all settings together
-  int trials_each = 10;  // at most so many of them for each setting
+  int trials_each = 10;  // at most this many of them for each setting
   double timeout = 10;   // s, of a run
   // A place gets a smaller size if a solver's best run takes longer than this, with its own
   // settings and with those found at the previous place.

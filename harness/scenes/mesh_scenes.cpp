@@ -58,7 +58,7 @@ int corner_of(const std::string& word, std::size_t vertices, const std::string& 
   char* rest = nullptr;
   const long number = std::strtol(word.c_str(), &rest, 10);
   if (rest == word.c_str() || (*rest != '\0' && *rest != '/'))
-    throw UsageError(where + ": '" + word + "' is no corner of a face, like 7 or 7/1/3");
+    throw UsageError(where + ": '" + word + "' is not a corner of a face, such as 7 or 7/1/3");
   const auto count = static_cast<long>(vertices);
   const long index = number < 0 ? count + number : number - 1;
   if (number == 0 || index < 0 || index >= count)
@@ -149,7 +149,7 @@ std::shared_ptr<const MeshModel> read_model(const std::string& name) {
     try {
       (void)inextensible::TriangleCollider(model->body, 0);
     } catch (const std::invalid_argument& error) {
-      throw UsageError("'" + body + "' is no body to collide with: " + error.what());
+      throw UsageError("'" + body + "' is not a body to collide with: " + error.what());
     }
   }
   const bool holds =

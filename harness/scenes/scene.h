@@ -46,7 +46,7 @@ struct Scene {
   double energy_bound = 0.05;  // infinite where a body that moves does work
   // Whether methods whose velocities are of the middle of a step start half a step back.
   bool staggered = true;
-  // Vertices of which a result tells how far they sag.
+  // Vertices whose sag a result states.
   struct Mark {
     const char* name;
     int vertex;
@@ -97,7 +97,7 @@ Scene built_scene(std::string_view name, const SceneParameters& given = {});
 bool names_mesh(std::string_view scene);  // "mesh:..."
 
 // The scene's name with pins ("y > 1.2", several joined by "and"; in the file's unit) and a body.
-// Throws UsageError where one is given and the scene is no mesh.
+// Throws UsageError where one is given and the scene is not a mesh.
 std::string with_mesh_parts(const std::string& scene, const std::string& pins,
                             const std::string& body);
 

@@ -227,7 +227,7 @@ TrialResult run_trial(const std::function<Trial()>& build, const std::string& so
 void from_json(const json& name, Outcome& outcome) {
   const auto place = std::ranges::find(outcome_names, name.get<std::string>());
   if (place == std::end(outcome_names))
-    throw json::other_error::create(502, name.dump() + " is no outcome of a trial", nullptr);
+    throw json::other_error::create(502, name.dump() + " is not the outcome of a trial", nullptr);
   outcome = static_cast<Outcome>(place - outcome_names);
 }
 

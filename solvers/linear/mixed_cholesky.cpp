@@ -11,7 +11,7 @@ namespace {
 // The residual after one solve, relative to the right-hand side, is some roundings times the
 // condition of the matrix scaled to a unit diagonal, of which the pivots are an estimate.
 constexpr double roundings = 4 * std::numeric_limits<float>::epsilon();
-constexpr int most_refinements = 6;  // each gains more than two digits, or the factor is no good
+constexpr int most_refinements = 6;  // each gains more than two digits, or the factor is useless
 
 double norm(const std::vector<double>& v) {
   return std::sqrt(std::inner_product(v.begin(), v.end(), v.begin(), 0.0));

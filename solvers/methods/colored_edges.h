@@ -27,7 +27,7 @@ class ColoredEdges {
  public:
   explicit ColoredEdges(const Problem& problem);
 
-  // Blocks are whole groups of this many entries, filled up with entries that are no edge: their
+  // Blocks are whole groups of this many entries, filled up with entries that are not edges: their
   // ends are places that no edge of the block has, problem_edge() is -1.
   static constexpr int width = 16;
 

@@ -1,4 +1,4 @@
-// Two rows that are no contestants.
+// Two rows that do not compete.
 //
 // dense_newton: the M-closest point of {C = 0} (ICD = SAP, Goldenthal et al. 2007, Theorem 1) to
 // 1e-12, by dense Newton with full pivoting: slow and obvious, what tests compare with for small n.

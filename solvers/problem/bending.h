@@ -1,7 +1,7 @@
 // Bending as a quadratic energy,
 //   V(x) = 1/2 sum over stencils s of k_s |sum_i c_i x_i|^2,
 // whose gradient is a constant matrix times x. Where edges keep their length a yarn's curvature
-// and a surface's mean curvature normal are linear in x, so that this is no linearization (Bergou,
+// and a surface's mean curvature normal are linear in x, so this is not a linearization (Bergou,
 // Wardetzky, Harmon, Zorin and Grinspun 2006, "A Quadratic Bending Model for Inextensible
 // Surfaces").
 #pragma once
@@ -14,7 +14,7 @@ namespace inextensible {
 
 struct BendingStencil {
   std::array<int, 4> vertex;          // the last is the first again in a stencil of three
-  std::array<double, 4> coefficient;  // 1/m or 1, sum 0; 0 of what is no vertex of its own
+  std::array<double, 4> coefficient;  // 1/m or 1, sum 0; 0 for an entry without a vertex
   double stiffness;                   // N m or N/m, so that the energy is in J
 };
 using Bending = std::vector<BendingStencil>;

@@ -128,7 +128,7 @@ def table_of(name: str) -> str:
     rows = [{**row, "meaning": row.get("meaning", row.get("summary", row.get("description")))}
             for row in json.loads(output_of("list", name, "--json"))]
     columns = [column for column in ("name", "where", "unit", "meaning") if column in rows[0]]
-    quoted = "`bench {}`" if name == "verbs" else "{}" if name == "claims" else "`{}`"
+    quoted = "`bench {}`" if name == "verbs" else "`{}`"
     return markdown([name.removesuffix("s").replace("statuse", "status") if column == "name" else column for column in columns],
                     [[quoted.format(row[column]) if column == "name" else row[column].replace("|", "\\|") for column in columns] for row in rows])
 

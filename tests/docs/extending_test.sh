@@ -63,15 +63,19 @@ cat >../tiny.json <<'JSON'
 JSON
 "$bench" --sweep strain --config ../tiny.json --solver 'symmetric_sweeps|fast_projection' --no-plots --force --out ../tiny-result.json \
   >../sweep.log || { cat ../sweep.log; fail "the sweep failed"; }
+"$bench" --sweep stability --case thrown --solver 'symmetric_sweeps|fast_projection' --no-plots --force --out ../hard.json >../hard.log ||
+  { cat ../hard.log; fail "the hard case does not end as it says"; }
 "$bench" list verbs | grep '^ *count: ' >/dev/null || fail "the verb is not listed"
 "$bench" count ../tiny-result.json | grep -E '^ok [0-9]+$' >/dev/null || fail "the verb does not count"
 "$bench" plot ../tiny-result.json | grep 'tiny-result-strain-over-step.svg$' >/dev/null || fail "the figure is not drawn"
-/usr/bin/python3 - ../tiny-result.json <<'PYTHON'
+/usr/bin/python3 - ../tiny-result.json ../hard.json <<'PYTHON'
 import json
 import sys
 
 points = json.load(open(sys.argv[1], encoding="utf-8"))["points"]
 best = {p["solver"]: p for p in points if p["best"]}
+hard = json.load(open(sys.argv[2], encoding="utf-8"))["matrix"]
+assert len(hard) == 2 and all(row["case"] == "thrown" and row["as_expected"] for row in hard), hard
 assert set(best) == {"symmetric_sweeps", "fast_projection"}, set(best)
 assert all(p["scene"] == "swing" for p in points)
 assert all(-1.1 < p["lowest_height"] < 0 for p in best.values()), [p["lowest_height"] for p in best.values()]

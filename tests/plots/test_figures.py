@@ -77,7 +77,7 @@ def test_cost_over_strain(pictures: dict) -> None:
     assert len(found) == len(curves(main)) == 3
     assert np.allclose(found[BLUE].get_xdata(), [0.1, 1, 10])
     assert np.allclose(found[BLUE].get_ydata(), [0.01 / limit**0.5 for limit in (0.001, 0.01, 0.1)])
-    assert len(found[ORANGE].get_xdata()) == 2, "Jacobi's failed limit is no point of its curve"
+    assert len(found[ORANGE].get_xdata()) == 2, "Jacobi's failed limit is not a point of its curve"
     (strip,) = strips(figure)
     assert [label.get_text() for label in strip.get_yticklabels()] == ["jacobi"]
     assert marks(strip) == ["DT"], "from the coarsest step to the finest"

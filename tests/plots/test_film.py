@@ -17,7 +17,7 @@ WIDTH, HEIGHT = 260, 120  # pixels
 
 
 def pictured(folder: Path, frames: list[int], ends: int = 3) -> Path:
-    """Two takes of three frames with pictures, take 0 blue, take 1 orange, which ends after so many frames."""
+    """Two takes of three frames with pictures, take 0 blue, take 1 orange, which ends after the given number of frames."""
     take = {"label": "one", "strain_limit": 0.01, "step": 1 / 240, "energy_gained": "", "detail": "", "frames": 3,
             "largest_strain": [0.0, 0.0099, 0.005], "seconds": [0.01, 0.03], "sag": {"lower_edge": [0.0, 0.011, 0.022]}}
     other = {**take, "label": "other", "frames": ends, "detail": "gave up at t = 0.06 s: iteration limit" if ends < 3 else ""}

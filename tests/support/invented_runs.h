@@ -10,8 +10,8 @@ namespace harness::invented {
 
 using nlohmann::json;
 
-// A run of a chain of 80 that takes so many seconds and is off by `error`. The reference is sure to
-// 0.1 % at 0.5 s, and to 6 % at 1 s, where every run is off by 40 %.
+// A run of a chain of 80 that takes `seconds` and is off by `error`. The reference is known to
+// within 0.1 % at 0.5 s, and to 6 % at 1 s, where every run is off by 40 %.
 inline json run(const std::string& contestant, double limit, double step, double seconds,
                 double error, bool best = false, const std::vector<double>& best_at_errors = {}) {
   PointResult point;

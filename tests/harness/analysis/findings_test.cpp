@@ -86,7 +86,7 @@ TEST(Growth, RecoversAKnownExponent) {
   EXPECT_EQ(yarns.largest.spec().resolution, 1001);
 }
 
-// Exponents that may be the same, or anything, are no finding.
+// Exponents that may be equal, or anything, are not a finding.
 TEST(Growth, IsToldWhereIntervalsAreApart) {
   EXPECT_NE(sentence_of(growth_of(1.25, 1.001)), "");
   EXPECT_EQ(sentence_of(growth_of(1.5 - 1e-6, 1.001)), "") << "the same, as far as is known";

@@ -173,7 +173,7 @@ std::vector<AnswerRow> measured(const char* answer, const char* solver, double t
 TEST(KnownAnswers, AreMetWithTheOrdersOfTheMethods) {
   const struct {
     const char *answer, *solver;
-    double order;      // 0: not tested, as a chain of links is no continuum
+    double order;      // 0: not tested, as a chain of links is not a continuum
     double deviation;  // of the finest step; at most
   } cases[] = {{"baton_place", "fast_projection", 1, 0.1},
                {"baton_place", "rattle", 2, 1e-4},

@@ -130,7 +130,7 @@ TEST(Claims, C13HoldsTheDeliveredStrainOfThePapersOrderAgainstTheLimit) {
   EXPECT_EQ(with(0.0012, 0.001).verdict, "changed");
   EXPECT_EQ(with(0.0012, 0.05).verdict, "undecided");  // two of four
   EXPECT_EQ(with(0.05, 0.05).verdict, "not reproduced");
-  // With contact inside the solve there is no collision filter to strain anything.
+  // With contact inside the solve no collision filter strains anything.
   EXPECT_EQ(verdict("C13", {run("icd", 0.001, 1)}).verdict, "not yet measured");
   EXPECT_EQ(verdict("C13", {run("icd", 0.05), run("shake", 0.001, 1)}).verdict, "not reproduced");
 }

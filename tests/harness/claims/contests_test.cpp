@@ -36,7 +36,7 @@ TEST(Claims, C1TellsOfEqualErrorToo) {
   EXPECT_EQ(with(-0.1).verdict, "reproduced");
   EXPECT_TRUE(says(with(-0.1), "over the error at any limit: not reproduced, slope"));
   EXPECT_TRUE(says(with(-0.5), "over the error at any limit: undecided"));
-  // A reference that is sure to 10 % tells nothing of smaller errors.
+  // A reference known to within 10 % says nothing about smaller errors.
   EXPECT_TRUE(says(with(-1, 0.033), "over the error at any limit: not yet measured"));
 }
 
@@ -94,7 +94,7 @@ TEST(Claims, C4PredictsStrainFromOneSceneAndSize) {
     p["options"]["stiffness"] = factor * 9.81 / limit / (chain ? 1 : 42);
     return p;
   };
-  // The strands' weight is the same law: a chain tells of a drape.
+  // The strands' weight follows the same law: a chain speaks for a drape.
   const auto with = [&](double factor) {
     return verdict("C4", {calibration(0.1, 1, 0.01, true), calibration(0.03, 1, 0.01, true),
                           calibration(0.01, factor)});

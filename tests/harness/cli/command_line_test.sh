@@ -97,8 +97,8 @@ cp old.json kept.json
 pid=$!
 for _ in $(seq 3000); do [[ -s old.json.journal && $(wc -l <old.json.journal) -gt 1 ]] && break; sleep 0.01; done
 # Meanwhile other timed runs are refused; an untimed one need not wait, and its times are refused.
-refused "process $pid is taking times" "${one[@]}" --out out.json --no-wait
-refused "process $pid is taking times" tune --scene chain --out out.json --no-wait
+refused "process $pid is timing runs" "${one[@]}" --out out.json --no-wait
+refused "process $pid is timing runs" tune --scene chain --out out.json --no-wait
 makes untimed.json "${one[@]}" --untimed
 refused "was made with --untimed" plot untimed.json
 refused "was made with --untimed" claims untimed.json

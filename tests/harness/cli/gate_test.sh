@@ -49,7 +49,7 @@ exits 4 'SLOWER' compare baseline.json faulty.json
 
 # A result whose times are all longer does not pass: with enough runs it is slower, with one each it is undecided (exit code 6).
 # Times must differ by more than the machine's own speed did.
-# timed NAME RUNS FACTOR [SENTINEL]: base.json with so many samples a point, all longer by a factor.
+# timed NAME RUNS FACTOR [SENTINEL]: base.json with RUNS samples a point, all longer by a factor.
 timed() {
   local sentinel=${4-"{'noisy': False}"}
   edit base.json "$1.json" "[t.update(samples=[$3 * t['samples'][0] * (1 + 0.001 * i) for i in range($2)])
@@ -88,10 +88,10 @@ done <<TABLE
 cannot read the gate 'missing.json'|compare base.json again.json --gate missing.json --markdown out.md
 'wrong.json' is not a result file|compare base.json wrong.json --junit out.xml
 a stability sweep, which cannot be compared|compare hard.json base.json
-of an interrupted run|baseline part.json --out out.json
+from an interrupted run|baseline part.json --out out.json
 is not a result file|baseline baseline.json --out out.json
 no point on standard input|point
-'missing' is no program|ab missing $BENCH_BINARY --junit out.xml
+'missing' is not a program|ab missing $BENCH_BINARY --junit out.xml
 --pairs|ab $BENCH_BINARY $BENCH_BINARY --pairs 3
 TABLE
 exits 2 "did you mean 'shake'" ab "$BENCH_BINARY" "$BENCH_BINARY" --solver shaek

@@ -33,7 +33,7 @@ assert len(a) == len(b), (len(a), len(b))
 PYTHON
 }
 
-# hold RESULT LINES [OPTION...]: a run in the background ($!), stopped by SIGSTOP once its journal has so many lines. Tries again
+# hold RESULT LINES [OPTION...]: a run in the background ($!), stopped by SIGSTOP once its journal has LINES lines. Tries again
 # if the run finishes unseen on a busy machine.
 hold() {
   for _ in $(seq 20); do

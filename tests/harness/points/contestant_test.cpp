@@ -126,7 +126,7 @@ TEST(Suite, NamesFileKeyAndValueOfWhatIsWrong) {
       {sweep(R"("limit": 0.1, "resolutions": [2.5])"), "[resolutions][0], 2.5: "},
       {sweep(R"("limit": 0.1, "solver_options": {"icd": {"max_iteration": 3}})"),
        "did you mean 'max_iterations'"},
-      {solvers(R"("jacobi", "jacobi")"), "'jacobi' is there twice"},
+      {solvers(R"("jacobi", "jacobi")"), "'jacobi' is listed twice"},
       {solvers(R"({"name": "icd", "solver": "jacobi"})"), "another solver"},
       {solvers(R"({"name": "my solver", "solver": "icd"})"), "a-z, 0-9 and _"},
       {solvers(R"({"name": "x", "solver": "idc"})"), "did you mean 'icd'"},

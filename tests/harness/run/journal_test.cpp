@@ -150,7 +150,8 @@ TEST_P(ShardTest, JoinedAreTheWhole) {
     std::ranges::sort(lines);
     return lines;
   };
-  EXPECT_TRUE(sorted(joined({whole, whole})) == sorted(whole)) << "what is there twice counts once";
+  EXPECT_TRUE(sorted(joined({whole, whole})) == sorted(whole))
+      << "what is listed twice counts once";
   for (std::size_t count = 1; count <= 8; ++count) {
     std::vector<json> parts;
     std::map<std::string, std::size_t> owner;  // of a scene and size

@@ -91,7 +91,7 @@ TEST(NoisySearch, IsNotMisledByFirstSamples) {
                6,
                2,
                8},
-        Ladder{"equal times are no rise", equal, equal, {}, 4, 6},
+        Ladder{"equal times are not a rise", equal, equal, {}, 4, 6},
         Ladder{"what is clearly slower is not run again", clear, clear, {}, 1, 3, false}}) {
     std::vector<PointResult> points(ladder.first.size());
     for (std::size_t rung = 0; rung < points.size(); ++rung) {

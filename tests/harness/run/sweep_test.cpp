@@ -46,7 +46,7 @@ TEST(StepSearch, RunsFromCoarseToFineAsLongAsThatIsOfUse) {
        {25, 50, 100},
        {0.1},
        1},
-      {"until the finest level that the reference is sure to",
+      {"until the finest level to which the reference is known",
        {.seconds = slowing(1.3), .error = error_of_step(4), .gap = 0.02 / sure_gaps},
        {25, 50, 100, 200, 400}},
       // 1, 2.5, 6.25, 15.6, 39 s: the last is stopped.

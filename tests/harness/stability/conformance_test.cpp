@@ -158,7 +158,7 @@ TEST_F(BrokenSolvers, FailTheCheckThatIsMeantForThemAndNoOther) {
     wanted.erase("");
     EXPECT_EQ(failed_checks(fault.name, fault.in_hard_cases), wanted) << fault.name;
   }
-  // Its corrections overshoot, but along their edges: that is no fault.
+  // Its corrections overshoot, but along their edges, which is not a fault.
   EXPECT_EQ(failed_checks("over_relaxed"), Checks{});
 }
 

@@ -241,7 +241,7 @@ TEST_P(EveryMethod, IsTheOtherMethodOnAChainIfItSaysSo) {
 }
 
 // Vertices without edges and a net that moves as a whole fall exactly, pinned vertices stay where
-// they are, with every word that one of the method's settings may have: each row tells the time
+// they are, with every word that one of the method's settings may have: each row states the time
 // that its velocities are of.
 TEST_P(EveryMethod, LetsWhatNoEdgeHoldsFallExactly) {
   std::vector<Settings> variants{{}};

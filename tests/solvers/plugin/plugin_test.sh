@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # From an installed bench: a solver and a program out of the tree are built with find_package; the solver is listed, swept,
-# recorded and checked; what is no fitting plug-in is one clear line and exit 2.
+# recorded and checked; what does not fit gives one clear line and exit 2.
 . "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../../harness/cli/functions.sh"
 
 # quietly COMMAND...: shows what it printed only if it fails, and ends the test.
