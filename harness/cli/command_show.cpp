@@ -156,14 +156,10 @@ struct PageOptions {
 };
 
 struct Results : PageOptions {
-  Words growth;
-
   void declare(const Command& command) {
     PageOptions::declare(
         command, "result files; of points that several have, the first one's count for claims",
         "the page; default: standard output");
-    command.option("--growth", growth, "result files for the tables of growth alone",
-                   "RESULT.json ...");
   }
 
   // The page begins with the command that generates it.
@@ -176,8 +172,7 @@ struct Results : PageOptions {
            "`bench show RESULT.json --all` has every contestant of a file, `bench report` every "
            "run. This page is generated; do not edit it. The command, which gives every file that "
            "the numbers come from:\n\n```sh\n./bench results";
-    for (const auto& [option, names] :
-         {std::pair("", &results), {" --growth", &growth}, {" --answers", &answers}}) {
+    for (const auto& [option, names] : {std::pair("", &results), {" --answers", &answers}}) {
       if (!names->empty()) text << option;
       for (const std::string& file : *names) text << ' ' << file;
     }
@@ -186,7 +181,7 @@ struct Results : PageOptions {
     std::vector<NamedResult> sweeps, known;
     for (NamedResult& file : files())
       (is_answers(file.document) ? known : sweeps).push_back(std::move(file));
-    print_results_page(text, sweeps, read_all(growth, ResultKinds::sweeps), known);
+    print_results_page(text, sweeps, known);
     return text.str();
   }
 

@@ -150,10 +150,15 @@ void print_planes(std::ostream& out, const std::vector<json>& sweeps) {
 
 // ---- Beside the planes ----
 
+// Exponents that are known to half a power.
 void print_growth(std::ostream& out, const std::vector<json>& sweeps) {
   std::vector<Growth> all;
   for (const json& sweep : sweeps) {
-    for (Growth& growth : growth_in(planes_of(sweep))) all.push_back(std::move(growth));
+    for (Growth& growth : growth_in(planes_of(sweep))) {
+      std::erase_if(growth.rows,
+                    [](const RowGrowth& row) { return !(row.exponent.half_width <= 0.5); });
+      if (!growth.rows.empty()) all.push_back(std::move(growth));
+    }
   }
   if (all.empty()) return;
   Table table{{"solver"}};
@@ -176,7 +181,8 @@ void print_growth(std::ostream& out, const std::vector<json>& sweeps) {
   }
   print_table(out,
               "## Growth\n\nThe time of a step, whatever the motion, grows as the number of "
-              "vertices to this power (95 % interval); and what a step takes at the largest size",
+              "vertices to this power (95 % interval; exponents less certain than 0.5 are left "
+              "out); and what a step takes at the largest size",
               table);
 }
 
@@ -340,10 +346,21 @@ Table outcomes_in(const json& document) {
   for (const json& cell : matrix) ++count[cell.at("solver")][cell.at("outcome")];
   Table table{{"solver"}};
   table.head.insert(table.head.end(), outcomes.begin(), outcomes.end());
+  // A row for each method, with the counts of its steppers.
+  std::string method;
   for (const std::string& solver : in_order(matrix, solver_of)) {
-    table.rows.push_back({solver});
-    for (const char* outcome : outcomes)
-      table.rows.back().push_back(std::to_string(count[solver][outcome]));
+    const std::size_t at = solver.find('@');
+    const bool next = solver.substr(0, at) != method;
+    method = solver.substr(0, at);
+    if (next) table.rows.emplace_back(table.head.size());
+    std::size_t column = 0;
+    const auto add = [&](const std::string& text) {
+      std::string& cell = table.rows.back()[column++];
+      if (!next) cell += ", ";
+      cell += text;
+    };
+    add(next ? solver : solver.substr(at));
+    for (const char* outcome : outcomes) add(std::to_string(count[solver][outcome]));
   }
   return table;
 }
@@ -376,21 +393,14 @@ Table differences_in(const json& document) {
 }
 
 void print_results_page(std::ostream& out, const std::vector<NamedResult>& results,
-                        const std::vector<NamedResult>& growth,
                         const std::vector<NamedResult>& answers) try {
   std::vector<NamedResult> all = results;
-  all.insert(all.end(), growth.begin(), growth.end());
   all.insert(all.end(), answers.begin(), answers.end());
   const auto is_hard = [](const NamedResult& result) { return result.document.contains("matrix"); };
-  std::vector<json> documents, sweeps, growing;
+  std::vector<json> documents, sweeps;
   for (const NamedResult& result : results) {
     documents.push_back(result.document);
     if (!is_hard(result)) sweeps.push_back(result.document);
-  }
-  growing = sweeps;
-  for (const NamedResult& result : growth) {
-    check_timed(result.document);
-    if (!is_hard(result)) growing.push_back(result.document);
   }
 
   out << "## The paper's claims (`bench claims` gives each rule)\n\n";
@@ -400,7 +410,7 @@ void print_results_page(std::ostream& out, const std::vector<NamedResult>& resul
          "six takes, if it is not of them. Bold: faster than each other one beyond the noise. "
          "`u`: with untuned settings. Errors are over the scene's size.\n\n";
   print_planes(out, sweeps);
-  print_growth(out, growing);
+  print_growth(out, sweeps);
   for (const SceneTable& about : scene_tables) {
     for (const NamedResult& result : results) {
       if (!is_hard(result)) print_scene(out, result, about);

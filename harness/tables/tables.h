@@ -24,11 +24,9 @@ void print_outcomes(std::ostream& out, const nlohmann::json& document);
 
 // ---- In Markdown ----
 
-// results: sweeps and stability sweeps, which decide the claims. growth: sweeps for tables of
-// growth alone, since a sweep at a fixed step has no place in contests of best steps. answers:
-// results of `bench answers`. Throws UsageError for incomplete documents.
+// results: sweeps and stability sweeps, which decide the claims. answers: results of
+// `bench answers`. Throws UsageError for incomplete documents.
 void print_results_page(std::ostream& out, const std::vector<NamedResult>& results,
-                        const std::vector<NamedResult>& growth,
                         const std::vector<NamedResult>& answers = {});
 void print_budgets(std::ostream& out, const std::vector<analysis::BudgetTable>& tables);
 

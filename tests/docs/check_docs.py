@@ -14,7 +14,7 @@ and that line of that file must then contain the text. Generated blocks end with
     <!-- bench list NAME -->                    what `bench list NAME` prints
     <!-- folders of solvers -->                 which folders each folder of solvers/CMakeLists.txt uses
     <!-- gaps PATTERN TIME ... -->              the parts of the gaps of the committed references that match, at these times
-    <!-- steps RESULT.json LIMIT STEP ... -->    time and largest error of every contestant at these steps
+    <!-- steps RESULT.json LIMIT STEP ...; ... -->    time and largest error of every contestant at these steps
     <!-- errors RESULT.json LIMIT CONTESTANT ... STEP ... -->   the errors of these at each fifth of the run
     <!-- orders ANSWERS.json NAME ... -->        the orders of convergence of these known answers
     <!-- methods HEADLINE, RESULT.json LIMIT, ... -->   each method's time as published and in its best stepper, within that error
@@ -196,20 +196,22 @@ def orders_of(words: str) -> str:
 
 def steps_of(words: str) -> str:
     """Milliseconds for a simulated second and the largest error in percent, or the status of a failure; of further limits, the last step."""
-    file, limits, *steps = words.split()
-    columns = [(limit, step) for i, limit in enumerate(limits.split(",")) for step in (steps[-1:] if i else steps)]
-    points = [p for p in json_of(ROOT / file)["points"] if not p["contestant"].endswith("_again")]
+    heads, columns, contestants = [], [], {}
+    for part in words.split(";"):
+        file, limits, *steps = part.split()
+        points = {(p["contestant"], p["strain_limit"], round(1 / p["step"], 3)): p for p in json_of(ROOT / file)["points"] if not p["contestant"].endswith("_again")}
+        contestants |= dict.fromkeys(key[0] for key in points)
+        for i, limit in enumerate(limits.split(",")):
+            for rate in (round(1 / float(step), 3) for step in (steps[-1:] if i else steps)):
+                heads.append(f"{next(iter(points.values()))['resolution']}, {100 * float(limit):g} %, 1/{rate:g} s")
+                columns.append({c: p for (c, of, at), p in points.items() if (of, at) == (float(limit), rate)})
 
-    def text(contestant: str, limit: str, step: str) -> str:
-        for p in points:
-            if p["contestant"] == contestant and p["strain_limit"] == float(limit) and math.isclose(p["step"], float(step)):
-                if p["status"] != "ok" or p["error"]["trajectory"] is None:
-                    return p["status"]
-                return f"{1e3 * p['seconds_per_simulated_second']['min']:.3g}, {100 * p['error']['trajectory']:.2g} %"
-        return "-"
+    def text(p: dict | None) -> str:
+        if p is None or p["status"] != "ok" or p["error"]["trajectory"] is None:
+            return p["status"] if p else "-"
+        return f"{1e3 * p['seconds_per_simulated_second']['min']:.3g}, {100 * p['error']['trajectory']:.2g} %"
 
-    return markdown(["contestant", *(f"1/{1 / float(step):g} s" + f", {100 * float(limit):g} %" * ("," in limits) for limit, step in columns)],
-                    [[f"`{contestant}`", *(text(contestant, *column) for column in columns)] for contestant in dict.fromkeys(p["contestant"] for p in points)])
+    return markdown(["contestant", *heads], [[f"`{c}`", *(text(column.get(c)) for column in columns)] for c in contestants])
 
 
 def errors_of(words: str) -> str:
@@ -296,7 +298,7 @@ def exit_codes() -> list[str]:
 
 def pictures() -> list[str]:
     """Pictures are of the commits that their results are of."""
-    files = [*(ROOT / "results").glob("*.json"), *(ROOT / "results/large").glob("*.json")]
+    files = [*(ROOT / "results").glob("*.json")]
     commits = {file: json_of(file)["context"]["build"]["git"] for file in files}
     errors = []
     for picture in sorted((ROOT / "plots/figures").glob("*.svg")):

@@ -30,7 +30,7 @@ inline std::string read_as_result(const std::string& text) {
     const nlohmann::json result = parse_result(text, "fuzz");
     (void)judge_claims({result});
     std::ostringstream page;
-    print_results_page(page, {{"fuzz", result}}, {});
+    print_results_page(page, {{"fuzz", result}});
   });
 }
 
