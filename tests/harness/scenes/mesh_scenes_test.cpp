@@ -155,7 +155,7 @@ TEST(MeshScene, WhatCanBeNoClothIsRefusedInALine) {
       {"mesh:" + good + ",pins=height>1", "must be like y>1.2"},
       {"mesh:" + good + ",pins=y>", "must be like y>1.2"},
       {"mesh:" + good + ",colour=red", "must be pins=... or body=..."},
-      {"mesh:" + good + ",body=" + good, "no body to collide with"},
+      {"mesh:" + good + ",body=" + good, "not a body to collide with"},
       {"mesh:nowhere.obj,pins=y>0", "nowhere.obj"},
       {"mesh:" + file_with("empty.obj", "# nothing\n") + ",pins=y>0", "no faces"},
       {"mesh:" + file_with("short.obj", "v 1 2\n") + ",pins=y>0", "line 1: a vertex needs three"},
