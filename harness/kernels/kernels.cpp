@@ -32,7 +32,6 @@
 #include "solvers/problem/forces.h"
 #include "solvers/registry.h"
 #include "solvers/systems/constraint_system.h"
-#include "solvers/systems/kkt_system.h"
 
 extern "C" double cblas_dasum(int n, const double* x, int stride);  // OpenBLAS
 
@@ -312,56 +311,6 @@ void linear_solver(benchmark::State& state, const std::string& name, bool solve,
   }
 }
 
-// What a projection asks of a linear solver, to the digits that it asks for.
-void whole_system(benchmark::State& state, const std::string& name, int n) {
-  const Moment& m = moment("drape", n);
-  const Linearized l(m, name);
-  Eigen::VectorXd x = l.c;
-  while (state.KeepRunning()) {
-    l.system.schur().assemble(l.u, l.solver->values());
-    x = l.c;
-    if (!l.solver->factor() || !l.solver->solve_within(1e-2, x.data()))
-      return state.SkipWithError("not positive definite");
-    benchmark::ClobberMemory();
-  }
-  per_item(state, m.problem().constraints());
-}
-
-// About the matrix of ICD's second iteration: with fast projection's first multipliers, negative
-// ones left out of H, so that there is one factorization. Factoring includes assembling; solving
-// includes refinement, or the conjugate gradients to ICD's own tolerance.
-void kkt(benchmark::State& state, const std::string& solver, bool solve, int n) {
-  const Moment& m = moment("drape", n);
-  const Linearized l(m, "multifrontal");
-  const EdgeConstraints& edges = l.system.edges();
-  std::unique_ptr<KktSolver> system;
-  if (solver == "projected_cg") {
-    const Settings settings = complete_settings(*find_backend("icd"), {});
-    const double tolerance = std::get<double>(settings.at("cg_tolerance"));
-    system = make_projected_cg(m.problem(), edges, {tolerance});
-  } else {
-    system = make_kkt_system(m.problem(), edges);
-  }
-  if (!l.solver->factor()) return state.SkipWithError("not positive definite");
-  Eigen::VectorXd mu = l.c, q(edges.count());
-  l.solver->solve(mu.data());
-  mu /= system->mean_mass();
-  const Positions r = Positions::Zero(3, m.x0.cols());
-  Positions p = r;
-  WorkCounters work;
-  if (!system->factor(l.u, mu, nullptr, true, work)) return state.SkipWithError("singular");
-  while (state.KeepRunning()) {
-    if (!(solve ? system->solve(r, l.c, p, q, work) : system->factor(l.u, mu, nullptr, true, work)))
-      return state.SkipWithError("singular, or too inaccurate");
-  }
-  if (work.factorizations != (solve ? 1 : state.iterations() + 1))
-    return state.SkipWithError("another solver had to take over");
-  per_item(state, edges.count());
-  state.counters["nnz_L"] = work.factor_nonzeros;
-  state.counters["flops"] = rate(solve ? 0 : work.factor_flops);
-  state.counters["back_solves"] = average(static_cast<double>(work.back_solves));
-}
-
 // ---- All of them ----
 
 template <class Body, class... Arguments>
@@ -390,17 +339,12 @@ void register_steps(const std::string& scene, int n) {
     add("iteration/" + name + at, iteration, name, scene, n)->UseManualTime();
 }
 
-void register_linear_systems(const std::string& scene, int n, const std::vector<std::string>& spd,
-                             const std::vector<std::string>& saddle_point) {
+void register_linear_systems(const std::string& scene, int n, const std::vector<std::string>& spd) {
   const std::string at = "/" + scene + ":" + std::to_string(n);
   add("assembly" + at, assembly, scene, n);
   for (const std::string& name : spd) {
     add("factor/" + name + at, linear_solver, name, false, scene, n);
     add("solve/" + name + at, linear_solver, name, true, scene, n);
-  }
-  for (const std::string& name : saddle_point) {
-    add("icd_factor/" + name + at, kkt, name, false, n);
-    add("icd_solve/" + name + at, kkt, name, true, n);
   }
 }
 
@@ -430,15 +374,11 @@ void register_all() {
   register_floors();
   for (const int n : {80, 1000, 100000, 1000000}) {
     register_steps("chain", n);
-    register_linear_systems("chain", n, {"tridiagonal"}, {});
+    register_linear_systems("chain", n, {"tridiagonal"});
   }
   for (const int n : {15, 31, 71, 101}) {
     register_steps("drape", n);
-    register_linear_systems("drape", n, spd, {"projected_cg", "quasi_definite"});
-  }
-  for (const int n : {15, 31, 71, 101, 201, 501}) {
-    for (const std::string& name : spd)
-      add("assemble_factor_solve/" + name + "/drape:" + std::to_string(n), whole_system, name, n);
+    register_linear_systems("drape", n, spd);
   }
 }
 
@@ -447,7 +387,7 @@ void register_all() {
 
 int main(int argc, char** argv) try {
   harness::use_one_thread();
-  // An option of all programs that take times, which Google Benchmark does not know.
+  // An option of all programs that time runs, which Google Benchmark does not know.
   char** const end = std::remove_if(
       argv + 1, argv + argc, [](const char* word) { return std::string(word) == "--no-wait"; });
   const bool wait = end == argv + argc;

@@ -164,14 +164,27 @@ void Contacts::accept(const Positions& x) {
   const double scale = 1 / (h_ * h_), edge = margin_ / margin;
   expected_ = scale * (x - candidate_);
   for (int c = 0; c < count_; ++c) expected_.col(vertex_[c]) -= scale * push(c) * normal(c);
-  for (Eigen::Index v = 0; v < x.cols(); ++v) {
-    const Eigen::Vector3d now = expected_.col(v), before = before_.col(v);
-    const double squared = (x.col(v) - start_->col(v)).squaredNorm();
-    const double weight = squared <= edge * edge ? newest : newest * edge / std::sqrt(squared);
-    pressing_.col(v) += weight * (now - pressing_.col(v));
-    const bool contradict = now.dot(before) <= 0, less = now.squaredNorm() < before.squaredNorm();
-    for (int axis = 0; axis < 3; ++axis)
-      pulling_(axis, v) = contradict ? 0 : less ? now[axis] : before[axis];
+  const double *at = x.data(), *from = start_->data(), *now = expected_.data(),
+               *before = before_.data();
+  double *pressing = pressing_.data(), *pulling = pulling_.data();
+#pragma GCC ivdep
+  for (Eigen::Index k = 0; k < 3 * x.cols(); k += 3) {
+    double squared = 0, both = 0, now_squared = 0, before_squared = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double moved = at[k + axis] - from[k + axis], a = now[k + axis], b = before[k + axis];
+      squared += moved * moved;
+      both += a * b;
+      now_squared += a * a;
+      before_squared += b * b;
+    }
+    const double weight = newest * std::min(1.0, edge / std::sqrt(squared));
+    const double new_part = both > 0 && now_squared < before_squared ? 1 : 0;
+    const double old_part = both > 0 ? 1 - new_part : 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double a = now[k + axis], b = before[k + axis];
+      pressing[k + axis] += weight * (a - pressing[k + axis]);
+      pulling[k + axis] = new_part * a + old_part * b;
+    }
   }
   before_.swap(expected_);
 }

@@ -5,28 +5,6 @@
 namespace inextensible {
 namespace {
 
-// Stencils with consecutive vertices are found side by side, as Problem puts them in that order.
-constexpr std::size_t side_by_side = 4;
-
-bool consecutive(const BendingStencil* s) {
-  bool all = true;
-  for (std::size_t i = 1; i < side_by_side; ++i) {
-    for (std::size_t role = 0; role < 4; ++role) {
-      all &= s[i].vertex[role] == s[0].vertex[role] + static_cast<int>(i);
-      all &= s[i].coefficient[role] == s[0].coefficient[role];
-    }
-    all &= s[i].stiffness == s[0].stiffness;
-  }
-  return all;
-}
-
-bool consecutive(const Edge* e) {
-  bool all = true;
-  for (int i = 1; i < static_cast<int>(side_by_side); ++i)
-    all &= (e[i].a == e[0].a + i) & (e[i].b == e[0].b + i);
-  return all;
-}
-
 // q -= scale W grad V of n stencils, the first of them s, at p.
 template <std::size_t n>
 void add_bending(const BendingStencil& s, const double* w, const double* p, double scale,
@@ -66,14 +44,16 @@ void add_springs(const Edge& e, const double* k, const double* r, const double* 
   for (std::size_t i = 0; i < 3 * n; ++i) qb[i] -= fb[i] * d[i];
 }
 
-// Calls add.operator()<n>(i) for stencils i ... i + n - 1, n being 1 or, where they are
-// consecutive, side_by_side.
-template <class Stencils, class Add>
-void for_each_group(const Stencils& all, Add add) {
-  for (std::size_t i = 0; i < all.size();) {
-    const bool many = i + side_by_side <= all.size() && consecutive(&all[i]);
-    many ? add.template operator()<side_by_side>(i) : add.template operator()<1>(i);
-    i += many ? side_by_side : 1;
+// Calls add.operator()<n>(i) for stencils i ... i + n - 1 of one run (Problem::shear_runs), which
+// are found side by side.
+template <class Add>
+void for_each_group(const std::vector<std::size_t>& runs, Add add) {
+  std::size_t i = 0;
+  for (const std::size_t run : runs) {
+    const std::size_t end = i + run;
+    for (; i + 8 <= end; i += 8) add.template operator()<8>(i);
+    for (; i + 4 <= end; i += 4) add.template operator()<4>(i);
+    for (; i < end; ++i) add.template operator()<1>(i);
   }
 }
 
@@ -83,14 +63,14 @@ void add_accelerations(const Problem& problem, const Positions& x, const Positio
   y.colwise() += fall;
   const double* w = problem.inverse_mass().data();
   if (const Springs* shear = problem.shear()) {
-    for_each_group(shear->edges, [&]<std::size_t n>(std::size_t i) {
+    for_each_group(problem.shear_runs(), [&]<std::size_t n>(std::size_t i) {
       add_springs<n>(shear->edges[i], &shear->stiffness[i], &shear->rest_length[i], w,
                      shear_at.data(), scale, y.data());
     });
     work.spring_evaluations += static_cast<std::int64_t>(shear->edges.size());
   }
   const Bending& bending = problem.bending();
-  for_each_group(bending, [&]<std::size_t n>(std::size_t i) {
+  for_each_group(problem.bending_runs(), [&]<std::size_t n>(std::size_t i) {
     add_bending<n>(bending[i], w, x.data(), scale, y.data());
   });
   work.spring_evaluations += static_cast<std::int64_t>(bending.size());

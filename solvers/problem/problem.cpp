@@ -98,6 +98,30 @@ void put_in_order(Bending& bending) {
   });
 }
 
+bool follows(const Edge& one, const Edge& next) {
+  return next.a == one.a + 1 && next.b == one.b + 1;
+}
+
+bool follows(const BendingStencil& one, const BendingStencil& next) {
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (next.vertex[i] != one.vertex[i] + 1) return false;
+  }
+  return one.coefficient == next.coefficient && one.stiffness == next.stiffness;
+}
+
+template <class Stencils>
+std::vector<std::size_t> runs_of(const Stencils& all) {
+  std::vector<std::size_t> runs;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (i > 0 && follows(all[i - 1], all[i])) {
+      ++runs.back();
+    } else {
+      runs.push_back(1);
+    }
+  }
+  return runs;
+}
+
 }  // namespace
 
 Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
@@ -124,9 +148,11 @@ Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
   if (parts_.shear) {
     check_shear(*parts_.shear, n);
     put_in_order(*parts_.shear);
+    shear_runs_ = runs_of(parts_.shear->edges);
   }
   check_bending(parts_.bending, n);
   put_in_order(parts_.bending);
+  bending_runs_ = runs_of(parts_.bending);
   check_drag(parts_.drag, n);
   if (parts_.body_motion && !parts_.collider) refuse("a body's motion without a collider");
   if (parts_.pins_follow_body && !parts_.body_motion)

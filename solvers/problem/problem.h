@@ -75,6 +75,10 @@ class Problem {
   const Eigen::Vector3d& gravity() const { return parts_.gravity; }
   const Springs* shear() const { return parts_.shear ? &*parts_.shear : nullptr; }
   const Bending& bending() const { return parts_.bending; }
+  // Lengths of the runs, in order, of springs of shear and of bending stencils whose vertices are
+  // those of the one before, each plus 1; of bending, coefficients and stiffness are the same too.
+  const std::vector<std::size_t>& shear_runs() const { return shear_runs_; }
+  const std::vector<std::size_t>& bending_runs() const { return bending_runs_; }
   bool has_drag() const { return !parts_.drag.empty(); }
   double drag(int vertex) const { return has_drag() ? parts_.drag[vertex] : 0; }
   // Whether there are forces that long steps take implicitly.
@@ -90,6 +94,7 @@ class Problem {
  private:
   ProblemParts parts_;
   std::vector<double> inverse_mass_;
+  std::vector<std::size_t> shear_runs_, bending_runs_;
   double shortest_rest_length_ = 0, longest_rest_length_ = 0, total_mass_ = 0;
 };
 
