@@ -150,13 +150,13 @@ void print_planes(std::ostream& out, const std::vector<json>& sweeps) {
 
 // ---- Beside the planes ----
 
-// Exponents that are known to half a power.
+// Exponents that are known to a quarter of a power.
 void print_growth(std::ostream& out, const std::vector<json>& sweeps) {
   std::vector<Growth> all;
   for (const json& sweep : sweeps) {
     for (Growth& growth : growth_in(planes_of(sweep))) {
       std::erase_if(growth.rows,
-                    [](const RowGrowth& row) { return !(row.exponent.half_width <= 0.5); });
+                    [](const RowGrowth& row) { return !(row.exponent.half_width <= 0.25); });
       if (!growth.rows.empty()) all.push_back(std::move(growth));
     }
   }
@@ -181,7 +181,7 @@ void print_growth(std::ostream& out, const std::vector<json>& sweeps) {
   }
   print_table(out,
               "## Growth\n\nThe time of a step, whatever the motion, grows as the number of "
-              "vertices to this power (95 % interval; exponents less certain than 0.5 are left "
+              "vertices to this power (95 % interval; exponents less certain than 0.25 are left "
               "out); and what a step takes at the largest size",
               table);
 }
