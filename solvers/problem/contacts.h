@@ -154,7 +154,7 @@ class Contacts {
   std::vector<int> place_;                            // of a vertex's contact, or -1
   Obstacle obstacle_;
   std::vector<ContactPlane> found_;
-  std::vector<char> stopped_;
+  std::vector<char> stopped_;  // by contact
   // With friction only: the candidate after it, where edges are expected to take it, and what they
   // have done to vertices, m/s^2: in the last step; along surfaces; towards them.
   Positions candidate_, expected_, before_, pulling_, pressing_;

@@ -75,8 +75,8 @@ class Problem {
   const Eigen::Vector3d& gravity() const { return parts_.gravity; }
   const Springs* shear() const { return parts_.shear ? &*parts_.shear : nullptr; }
   const Bending& bending() const { return parts_.bending; }
-  // Lengths of the runs, in order, of springs of shear and of bending stencils whose vertices are
-  // those of the one before, each plus 1; of bending, coefficients and stiffness are the same too.
+  // Springs of shear, and bending stencils, come in runs: the vertices of each are those of the one
+  // before, plus 1, and stencils of a run have the same coefficients and stiffness. Run lengths.
   const std::vector<std::size_t>& shear_runs() const { return shear_runs_; }
   const std::vector<std::size_t>& bending_runs() const { return bending_runs_; }
   bool has_drag() const { return !parts_.drag.empty(); }
