@@ -79,7 +79,7 @@ def _samples(point: Json) -> list[float]:
 
 # What a row holds; the scripts know it by these names.
 FIELDS: dict[str, Callable[[Json], Any]] = {
-    **{name: itemgetter(name) for name in ("id", "scene", "sweep", "vertices", "step", "status", "best", "adaptive")},
+    **{name: itemgetter(name) for name in ("id", "scene", "sweep", "vertices", "step", "status", "best")},
     "solver": itemgetter("contestant"), "limit": itemgetter("strain_limit"), "detail": itemgetter("status_detail"),
     "seconds": seconds_of, "high": lambda point: point["seconds_per_simulated_second"]["median"] if len(_samples(point)) >= 3 else None,
     "runs": lambda point: len(_samples(point)),

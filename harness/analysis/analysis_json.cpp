@@ -76,20 +76,6 @@ static void to_json(json& to, const Plane& plane) {
         {"cells", plane.cells}};
 }
 
-static void to_json(json& to, const RowGrowth& row) {
-  to = {{"row", row.row},
-        {"exponent", number(row.exponent.value)},
-        {"low", number(row.exponent.low())},  // null, as infinite, of two sizes
-        {"high", number(row.exponent.high())},
-        {"sizes", row.exponent.points},
-        {"smallest", row.smallest.vertices()},
-        {"largest", row.largest.vertices()}};
-}
-
-static void to_json(json& to, const Growth& growth) {
-  to = {{"scene", growth.scene}, {"strain_limit", growth.strain_limit}, {"rows", growth.rows}};
-}
-
 static void to_json(json& to, const Reach& reach) {
   to = {{"id", reach.point.id()},
         {"frame_seconds", reach.frame_seconds},
@@ -126,7 +112,7 @@ json best_json(double x, const Point& point) {
   return {{"x", x},
           {"time", time_json(p.samples)},
           {"filter", time_json(p.filter_samples)},
-          {"step", number(p.mean_step())},
+          {"step", number(p.spec.step)},
           {"ladder_end", p.at_ladder_end}};
 }
 
@@ -146,8 +132,7 @@ std::string failure_letters(const std::vector<Point>& runs, double limit, double
 }
 
 // A figure for each scene and sweep, and for what the sweep leaves fixed: vertices, or the limit.
-void add_curves(json& list, const ContestantRoles& roles, const std::vector<Plane>& planes,
-                bool adaptive) {
+json curves_of(const ContestantRoles& roles, const std::vector<Plane>& planes) {
   std::map<std::tuple<std::string, std::string, double>, json> figures;
   for (const Plane& plane : planes) {
     const bool sizes = plane.sweep == "resolution";
@@ -173,24 +158,21 @@ void add_curves(json& list, const ContestantRoles& roles, const std::vector<Plan
       }
     }
   }
+  json list = json::array();
   for (auto& [place, figure] : figures) {
     std::tie(figure["scene"], figure["sweep"], figure["fixed"]) = place;
-    figure["adaptive"] = adaptive;
     list.push_back(std::move(figure));
   }
+  return list;
 }
 
 }  // namespace
 
 json analysis_of(const Runs& runs) {
   const std::vector<Plane> planes = planes_of(runs);
-  json curves = json::array();  // runs with a step controller have figures of their own
-  add_curves(curves, runs.roles, planes, false);
-  add_curves(curves, runs.roles, planes_of(runs, true), true);
-  return {{"schema", "inextensible-analysis/1"}, {"headline_error", headline_error},
-          {"findings", findings_of(planes)},     {"planes", planes},
-          {"curves", std::move(curves)},         {"growth", growth_in(planes)},
-          {"budgets", budget_tables(runs, {})}};
+  return {{"schema", "inextensible-analysis/1"},     {"headline_error", headline_error},
+          {"findings", findings_of(planes)},         {"planes", planes},
+          {"curves", curves_of(runs.roles, planes)}, {"budgets", budget_tables(runs, {})}};
 }
 
 }  // namespace harness::analysis

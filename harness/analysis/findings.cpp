@@ -11,7 +11,6 @@ namespace harness::analysis {
 namespace {
 
 constexpr double headline_limit = 0.01;  // strain
-constexpr double vague_exponent = 1;     // an interval that reaches farther says nothing of growth
 
 std::string name_words(const Entry& entry) {
   return entry.row + (entry.role.unranked ? " with untuned settings" : "");
@@ -108,26 +107,8 @@ std::string sentence_of(const Cell& cell) {
          rival_words(cell, equals) + ".";
 }
 
-std::string sentence_of(const Growth& growth) {
-  const auto points = [](const RowGrowth& row) { return row.exponent.points; };
-  const int sizes = points(std::ranges::max(growth.rows, {}, points));
-  std::vector<RowGrowth> whole = growth.rows;  // all sizes, known exponent
-  std::erase_if(whole, [&](const RowGrowth& row) {
-    return row.exponent.points < sizes || !(row.exponent.half_width <= vague_exponent);
-  });
-  if (whole.size() < 2) return "";
-  const RowGrowth &least = whole.front(), &most = whole.back();
-  if (least.exponent.high() >= most.exponent.low()) return "";
-  return "From " + number_text(least.smallest.vertices(), 7) + " to " +
-         number_text(least.largest.vertices(), 7) +
-         " vertices the time of a step grows least with " + least.row +
-         ", as their number to the power " + exponent_words(least.exponent) + ", and most with " +
-         most.row + ", " + exponent_words(most.exponent) + ".";
-}
-
 std::vector<Finding> findings_of(const std::vector<Plane>& planes) {
   std::vector<Finding> findings;
-  const std::vector<Growth> growths = growth_in(planes);
   for (const Plane& plane : planes) {
     const bool largest = std::ranges::none_of(planes, [&](const Plane& other) {
       return other.scene == plane.scene && other.sweep == plane.sweep &&
@@ -146,52 +127,9 @@ std::vector<Finding> findings_of(const std::vector<Plane>& planes) {
     finding.sentences.push_back(sentence_of(headline ? *headline : plane.cell(limit, any_motion)));
     if (const Cell* second = headline ? second_of(plane, *headline) : nullptr)
       finding.sentences.push_back(sentence_of(*second));
-    for (const Growth& growth : growths) {
-      if (plane.sweep != "resolution" || growth.scene != plane.scene) continue;
-      std::string sentence = sentence_of(growth);
-      if (!sentence.empty()) finding.sentences.push_back(std::move(sentence));
-    }
     findings.push_back(std::move(finding));
   }
   return findings;
-}
-
-std::vector<Growth> growth_in(const std::vector<Plane>& planes) {
-  using Place = std::pair<std::string, double>;
-  std::vector<std::pair<Place, const Entry*>> entries;
-  for (const Plane& plane : planes) {
-    for (const Cell& cell : plane.cells) {
-      if (plane.sweep != "resolution" || cell.level != any_motion) continue;
-      for (const Entry& entry : cell.entries) {
-        if (entry.counts) entries.push_back({{plane.scene, cell.strain_limit}, &entry});
-      }
-    }
-  }
-  std::vector<Growth> all;
-  for (const auto& [place, here] : grouped(entries, [](const auto& e) { return e.first; })) {
-    Growth growth{place.first, place.second, {}};
-    for (auto& [row, own] : grouped(here, [](const auto& e) { return e.second->row; })) {
-      if (own.size() < 2) continue;
-      std::ranges::stable_sort(own, {}, [](const auto& e) { return e.second->point.vertices(); });
-      std::vector<double> vertices, seconds;
-      for (const auto& [at, entry] : own) {
-        vertices.push_back(entry->point.vertices());
-        seconds.push_back(entry->point.seconds() * entry->point.step());
-      }
-      growth.rows.push_back({row, log_log_slope(vertices, seconds), own.front().second->point,
-                             own.back().second->point});
-    }
-    std::ranges::stable_sort(growth.rows, {}, [](const RowGrowth& r) { return r.exponent.value; });
-    if (!growth.rows.empty()) all.push_back(std::move(growth));
-  }
-  return all;
-}
-
-std::string exponent_words(const Slope& exponent) {
-  std::string words = number_text(exponent.value, 3);
-  if (std::isfinite(exponent.half_width))
-    words += " (" + number_text(exponent.low(), 3) + " to " + number_text(exponent.high(), 3) + ")";
-  return words;
 }
 
 std::string title_of(const Plane& plane) {

@@ -6,30 +6,10 @@
 #include <vector>
 
 #include "harness/analysis/plane.h"
-#include "harness/base/statistics.h"
 
 namespace harness::analysis {
 
-// One row of the ranking, by its fastest runs at any motion.
-struct RowGrowth {
-  std::string row;
-  Slope exponent;  // of a step's time over the number of vertices
-  Point smallest, largest;
-};
-
-struct Growth {
-  std::string scene;
-  double strain_limit = 0;
-  std::vector<RowGrowth> rows;  // with at least two sizes; slowest growth first
-};
-
-// One for each scene and strain limit of resolution sweeps.
-std::vector<Growth> growth_in(const std::vector<Plane>& planes);
-
-// "1.13 (1.05 to 1.21)"; from only two sizes without an interval.
-std::string exponent_words(const Slope& exponent);
-
-// On one plane; for a resolution sweep on the largest one, with the growth up to it.
+// On one plane; for a resolution sweep on the largest one.
 struct Finding {
   std::string scene, sweep;
   int vertices = 0;
@@ -44,10 +24,6 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Finding, scene, sweep, vertices, subject, sen
 // of 1/200 s and an error of 1.4 %; y, the best of the paper's six, takes 2.1 (1.9-2.3) times as
 // long."
 std::string sentence_of(const Cell& cell);
-// "From 441 to 10201 vertices the time of a step grows least with x, as their number to the power
-// 1.1 (1.0 to 1.2), and most with y, 1.6 (1.5 to 1.7)." "" for fewer than two rows with all sizes.
-std::string sentence_of(const Growth& growth);
-
 std::vector<Finding> findings_of(const std::vector<Plane>& planes);
 
 // "chain, 80 vertices, over strain". Planes of one title, such as those of a resolution sweep,

@@ -214,14 +214,12 @@ const Cell& Plane::cell(double limit, double level) const {
   throw std::out_of_range("no such cell");
 }
 
-std::vector<Plane> planes_of(const Runs& runs, bool adaptive) {
-  std::vector<Point> points = runs.points;
-  std::erase_if(points, [&](const Point& p) { return p.spec().adaptive != adaptive; });
+std::vector<Plane> planes_of(const Runs& runs) {
   const auto place_of = [](const Point& p) {
     return std::tuple(p.spec().scene, p.spec().sweep, p.spec().scene_parameters, p.spec().vertices);
   };
   std::vector<Plane> planes;
-  for (const auto& [place, here] : grouped(points, place_of))
+  for (const auto& [place, here] : grouped(runs.points, place_of))
     planes.push_back(plane_of(here, runs));
   return planes;
 }
@@ -232,7 +230,7 @@ std::vector<BudgetTable> budget_tables(const Runs& runs, const std::vector<doubl
   std::vector<Point> points = runs.points;
   std::erase_if(points, [&](const Point& p) {
     const Role role = runs.roles.of(p.contestant());
-    return p.spec().adaptive || !p.ok() || !role.competes || role.again || !(frame_seconds(p) > 0);
+    return !p.ok() || !role.competes || role.again || !(frame_seconds(p) > 0);
   });
   const auto place_of = [](const Point& p) {
     return std::tuple(p.spec().scene, p.spec().scene_parameters, p.spec().vertices);

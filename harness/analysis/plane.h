@@ -69,8 +69,8 @@ struct Plane {
   const Cell& cell(double limit, double level) const;
 };
 
-// In the order of runs. adaptive: of runs with a step controller, instead of those without.
-std::vector<Plane> planes_of(const Runs& runs, bool adaptive = false);
+// In the order of runs.
+std::vector<Plane> planes_of(const Runs& runs);
 
 // ---- Budgets: the tightest strain limit, and its error, within a frame budget ----
 

@@ -83,7 +83,6 @@ Points::Points(const std::vector<json>& results) {
     const Runs runs(result);
     std::set<Key> here;
     for (const Point& point : runs.points) {
-      if (point.spec().adaptive) continue;
       const Key key(point.id(), point.contestant(), point.sweep(), point.collides_last());
       repeated = repeated || seen.contains(key);
       if (seen.contains(key)) continue;

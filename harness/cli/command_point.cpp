@@ -44,7 +44,7 @@ std::vector<PointSpec> read_specs(std::istream& in) {
     const json given = parse_document(line, where);
     try {
       // These may be omitted from a point that is typed by hand.
-      json object{{"contestant", ""}, {"settings", json::object()}, {"adaptive", false}};
+      json object{{"contestant", ""}, {"settings", json::object()}};
       object.update(given);
       check_spec(specs.emplace_back(spec_of(object)));
     } catch (const std::exception& error) {

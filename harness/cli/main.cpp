@@ -29,17 +29,6 @@ CLI::Validator within(const Bounds& bounds) {
       "");
 }
 
-// --solver accepts solver names of version 0.2 for one more version.
-std::string renamed(std::string text) {
-  for (const auto& [was, is] :
-       {std::pair("strips", "yarn_projection"), std::pair("oracle", "dense_newton"),
-        std::pair("projective_dynamics", "admm"), std::pair("xpbd_small_steps", "pbd_substeps")}) {
-    for (std::size_t at = 0; (at = text.find(was, at)) != std::string::npos;)
-      text.replace(at, std::string(was).size(), is);
-  }
-  return text;
-}
-
 }  // namespace
 
 std::optional<double> number_in(const std::string& text) {
@@ -79,7 +68,7 @@ void Command::alternatives(const std::string& name, std::string& value,
       ->type_name("REGEX")
       ->transform([](std::string text) {
         std::replace(text.begin(), text.end(), ',', '|');
-        return renamed(std::move(text));
+        return text;
       })
       ->delimiter('|')  // joins them again
       ->multi_option_policy(CLI::MultiOptionPolicy::Join);

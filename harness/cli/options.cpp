@@ -70,9 +70,7 @@ void SweepOptions::declare(const Command& to, const Command& of_suites) {
                    Bounds::whole_number(1));
   add_timeout(of_suites, timeout, "the suite's");
   of_suites.option("--steps", steps,
-                   "search (each solver's best step, default), all (the whole ladder) or adaptive "
-                   "(one run from the coarsest step, halved where the solver refuses it)",
-                   "HOW");
+                   "search (each solver's best step, default) or all (the whole ladder)", "HOW");
   of_suites.option("--finest", finest, "smallest step of the ladder instead of the suite's", "S",
                    Bounds::positive());
   of_suites.option("--finest-error", finest_error,
@@ -149,8 +147,6 @@ namespace {
 // Ends the step ladders of all sweeps at `finest`.
 void cut_ladders(Suite& suite, double finest) {
   for (SweepSpec& sweep : suite.sweeps) {
-    if (sweep.adaptive)
-      throw UsageError("--finest does not go with adaptive steps, which have no ladder");
     if (finest > sweep.coarsest)
       throw UsageError("--finest " + number_text(finest) + " leaves no step: the ladder of " +
                        sweep.scene + " begins at " + number_text(sweep.coarsest) + " s");
@@ -229,15 +225,10 @@ Suite load_suite(const SweepOptions& given) {
   if (suite.sweeps.empty())
     throw UsageError("'" + path + "' has no such sweep: --sweep " + options.sweep + " --scene " +
                      options.scene);
-  check_known("choice of steps", options.steps, {"search", "adaptive", "all"});
-  if (options.steps == "adaptive") {
-    if (options.sweep == "step")
-      throw UsageError("--steps adaptive does not go with --sweep step, whose steps are fixed");
-    for (SweepSpec& sweep : suite.sweeps) sweep.adaptive = true;
-    suite.name += "-adaptive";  // separate files and figures
-  } else if (options.steps == "all" && options.sweep != "step") {
+  check_known("choice of steps", options.steps, {"search", "all"});
+  if (options.steps == "all" && options.sweep != "step") {
     for (SweepSpec& sweep : suite.sweeps) sweep.every_step = true;
-    suite.name += "-all";
+    suite.name += "-all";  // separate files and figures
   }
   if (options.reps > 0) suite.reps = options.reps;
   if (options.finest > 0) cut_ladders(suite, options.finest);

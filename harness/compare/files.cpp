@@ -40,8 +40,7 @@ bool searched(const json& suite, const ComparedPoint& point) {
   const std::string scene = point.id.substr(0, point.id.find('/'));
   for (const json& sweep : suite.at("sweeps")) {
     if (sweep.at("sweep") != point.sweep || sweep.at("scene") != scene) continue;
-    const json steps = sweep.value("steps", json::object());
-    if (steps.value("all", false) || steps.value("adaptive", false)) return false;
+    if (sweep.value("steps", json::object()).value("all", false)) return false;
   }
   return true;
 }
@@ -114,11 +113,11 @@ ComparedPoint compared_point(const json& p) {
     if (const json error = p.at("error").value(name, json()); error.is_number())
       point.errors[name] = error;
   }
-  point.spec = p.contains("spec")  // of a baseline
-                   ? p.at("spec").get<std::string>()
-                   : fnv1a(json{p.at("scene_parameters"), p.value("settings", json::object()),
-                                p.value("adaptive", false), p.at("seed")}
-                               .dump());
+  point.spec =
+      p.contains("spec")  // of a baseline
+          ? p.at("spec").get<std::string>()
+          : fnv1a(json{p.at("scene_parameters"), p.value("settings", json::object()), p.at("seed")}
+                      .dump());
   const json seconds = p.value("seconds_per_simulated_second", json());
   if (seconds.is_object()) seconds.at("samples").get_to(point.samples);
   return point;

@@ -9,8 +9,7 @@ namespace harness {
 
 std::string PointSpec::id() const {
   return scene + '/' + contestant + "/n:" + std::to_string(vertices) +
-         "/strain:" + number_text(strain_limit) +
-         "/h:" + (adaptive ? "adaptive" : number_text(step));
+         "/strain:" + number_text(strain_limit) + "/h:" + number_text(step);
 }
 
 ErrorAtLevel error_at(const Measures& measures, double level) {
@@ -51,10 +50,6 @@ double PointResult::measured_seconds() const {
   for (std::size_t i = 0; i < samples.size(); ++i)
     sum += samples[i] * (i < sample_runs.size() ? sample_runs[i] : 1);
   return sum * spec.step * steps_planned;
-}
-double PointResult::mean_step() const {
-  if (!spec.adaptive || work.steps == 0) return spec.step;
-  return spec.scene_parameters.at("duration") / static_cast<double>(work.steps);
 }
 
 void append(const Samples& more, PointResult& point) {

@@ -80,11 +80,10 @@ struct PointSpec {
   std::string solver;
   inextensible::Settings settings;  // given ones only
   double strain_limit = 0.01;
-  double step = 0.01;     // s
-  bool adaptive = false;  // `step` is the largest one of a step controller
+  double step = 0.01;  // s
   std::uint64_t seed = 1;
 
-  // drape/fast_projection/n:5041/strain:0.01/h:0.004 (adaptive: /h:adaptive)
+  // drape/fast_projection/n:5041/strain:0.01/h:0.004
   std::string id() const;
 };
 
@@ -114,7 +113,6 @@ struct RunOutcome {
   PointStatus status = PointStatus::ok;
   std::string detail;
   double setup_seconds = 0;
-  double smallest_step = unknown;  // s, of the accepted ones of a step controller
   Measures measures;
 };
 
@@ -143,7 +141,6 @@ struct PointResult : Samples, RunOutcome {
   bool ok() const { return status == PointStatus::ok; }
   double seconds() const;           // the point's time: of its samples, by time_of()
   double measured_seconds() const;  // s that the runs of all samples took together
-  double mean_step() const;         // s; the spec's, but for adaptive steps
 };
 
 // Frame times replace the point's if there are any: they are those of a faster sample.

@@ -98,9 +98,7 @@ inline constexpr std::tuple spec_fields{
     field("settings", &PointSpec::settings, "", "the solver's settings as given"),
     field("strain_limit", &PointSpec::strain_limit, "", "permissible |strain|, 0.01 is 1 %",
           {.positive = true}),
-    field("step", &PointSpec::step, "s", "adaptive: the largest one", {.positive = true}),
-    field("adaptive", &PointSpec::adaptive, "",
-          "a step controller halves the step where the solver refuses it"),
+    field("step", &PointSpec::step, "s", "", {.positive = true}),
     field("seed", &PointSpec::seed, "", "of random orders")};
 
 // What follows from the scene's parameters.
@@ -135,8 +133,6 @@ inline constexpr std::tuple result_fields{
           "of the search for a stiffness", {.inside = "work"}),
     field("calibration_guess", &PointResult::calibration_guess, "N",
           "the stiffness that the search began with, from a neighbouring point; null: an estimate",
-          {.nullable = true}),
-    field("smallest_step", &PointResult::smallest_step, "s", "of the accepted ones; adaptive only",
           {.nullable = true}),
     field("steps_planned", &PointResult::steps_planned, "steps",
           "that the duration takes at this step"),

@@ -29,14 +29,9 @@ void read_limits(const json& object, const std::string& where, SweepSpec& spec) 
 void read_steps(const json& steps, const std::string& where, SweepSpec& spec) {
   spec.coarsest = steps.value("coarsest", spec.coarsest);
   spec.finest = steps.value("finest", spec.finest);
-  spec.adaptive = steps.value("adaptive", spec.adaptive);
   spec.every_step = steps.value("all", spec.every_step);
   if (spec.finest > spec.coarsest)
     throw UsageError(where + ": 'steps': 'finest' is larger than 'coarsest'");
-  if (spec.adaptive && spec.sweep == "step")
-    throw UsageError(where + ": a step sweep has fixed steps, so no 'adaptive' ones");
-  if (spec.adaptive && spec.every_step)
-    throw UsageError(where + ": 'steps': 'adaptive' and 'all' exclude each other");
 }
 
 // Impossible values are found before anything runs.
@@ -161,18 +156,15 @@ Suite read_suite(const std::string& path) { return parse_suite(read_file(path, "
 json to_json(const Suite& suite) {
   json sweeps = json::array();
   for (const SweepSpec& s : suite.sweeps) {
-    sweeps.push_back({{"sweep", s.sweep},
-                      {"scene", s.scene},
-                      {"solvers", s.contestants},
-                      {"limits", s.limits},
-                      {"resolutions", s.resolutions},
-                      {"steps",
-                       {{"coarsest", s.coarsest},
-                        {"finest", s.finest},
-                        {"adaptive", s.adaptive},
-                        {"all", s.every_step}}},
-                      {"scene_parameters", s.scene_parameters},
-                      {"solver_options", s.solver_options}});
+    sweeps.push_back(
+        {{"sweep", s.sweep},
+         {"scene", s.scene},
+         {"solvers", s.contestants},
+         {"limits", s.limits},
+         {"resolutions", s.resolutions},
+         {"steps", {{"coarsest", s.coarsest}, {"finest", s.finest}, {"all", s.every_step}}},
+         {"scene_parameters", s.scene_parameters},
+         {"solver_options", s.solver_options}});
   }
   json document = {{"name", suite.name},
                    {"description", suite.description},

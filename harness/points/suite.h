@@ -24,7 +24,6 @@ struct SweepSpec {
   std::vector<int> resolutions;  // resolution sweep: the axis; the others: one
   // Unless they are given, the ladder begins at the run's whole duration at most.
   double coarsest = 1.0 / 25, finest = 1.0 / 25600;  // s, ends of the step ladder
-  bool adaptive = false;    // a step controller from `coarsest` down, instead of the ladder
   bool every_step = false;  // the whole ladder instead of a search; step sweeps always do
   bool refine = true;       // also try rungs between the halvings. Not in files
   SceneParameters scene_parameters;

@@ -16,7 +16,6 @@ namespace {
 constexpr double refinements[] = {1, 1.2, 1.44, 1.68};
 
 std::vector<double> step_ladder(const SweepSpec& sweep, std::span<const double> divisors) {
-  if (sweep.adaptive) return {sweep.coarsest};
   std::vector<double> ladder;
   for (double h = sweep.coarsest; h >= sweep.finest * (1 - 1e-9); h /= 2) {
     for (const double divisor : divisors) {
@@ -40,8 +39,7 @@ void add_ladder(Search& search, const SweepSpec& sweep, const SweepFilters& filt
   };
   const std::size_t halvings = step_ladder(sweep, {refinements, 1}).size();
   search.ladder = kept({refinements, 1});
-  if (search.every_step || sweep.adaptive || !sweep.refine || search.ladder.size() < halvings)
-    return;
+  if (search.every_step || !sweep.refine || search.ladder.size() < halvings) return;
   search.ladder = kept(refinements);
   search.stride = std::size(refinements);
 }
@@ -90,7 +88,6 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
         base.contestant = contestant.name;
         base.solver = contestant.solver;
         base.seed = suite.seed;
-        base.adaptive = sweep.adaptive;
         // Without a limit of its own a solver does the same at all of them.
         const bool limited = inextensible::find_backend(contestant.solver)->strain_control !=
                              inextensible::StrainControl::none;

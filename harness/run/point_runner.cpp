@@ -120,13 +120,11 @@ class PointRunner::Observed : public Observer {
     const double time = state.time - runner_.first_state_.time;
     // Time in which another process had the processor is not the frame's.
     if (driven.taken > 0)
-      frames_.add(spec_.adaptive ? 1 : driven.taken, spec_.step, time,
-                  std::min(seconds, cpu_seconds));
+      frames_.add(driven.taken, spec_.step, time, std::min(seconds, cpu_seconds));
     if (!judge_ && seconds < shortest_block) block_ *= 2;
   }
 
   bool after(const State& state, const DriveState& driven) {
-    if (spec_.adaptive) run_.smallest_step = driven.smallest;
     if (judge_ && overstrained(judge_->after(run_.stepper->filtered_positions(), state, driven.last,
                                              driven.whole)))
       return false;
@@ -149,7 +147,7 @@ class PointRunner::Observed : public Observer {
     if (stop_at_ != diverged_strain) return options;  // no errors, and nothing beside them
     options.reference = runner_.reference_;
     // Memory for iterates would distort the growth that a resolution sweep measures.
-    options.residual = backend_.shows_iterates && !spec_.adaptive && spec_.sweep != "resolution";
+    options.residual = backend_.shows_iterates && spec_.sweep != "resolution";
     // Only a figure of step sweeps draws the series.
     options.residual_series = spec_.sweep == "step";
     return options;
@@ -181,8 +179,6 @@ class PointRunner::Observed : public Observer {
       run_.status = driven.result.status == Status::not_finite ? PointStatus::diverged
                                                                : PointStatus::not_converged;
       run_.detail = refusal(driven.result, run_.stepper->work().steps, time);
-      if (spec_.adaptive)
-        run_.detail += "; at the smallest step, " + number_text(driven.next) + " s";
       return;
     }
     const bool slow = driven.end == End::stopped;
@@ -240,9 +236,8 @@ Run PointRunner::run(const inextensible::Settings& settings, bool judged, double
   observer.each({}, {});
   // The judge can take longer than the steps; without it there are only reads of the clock between.
   const double cpu_begin = thread_seconds();
-  const DriveState driven =
-      drive(*run.stepper, state, {spec_.step, steps_, spec_.adaptive ? usual_halvings : 0},
-            observer, {limits_.timeout, start, limits_.interrupted});
+  const DriveState driven = drive(*run.stepper, state, {spec_.step, steps_, 0}, observer,
+                                  {limits_.timeout, start, limits_.interrupted});
   if (!judged) run.cpu_seconds = thread_seconds() - cpu_begin;
   observer.finish(driven, state.time);
   return run;

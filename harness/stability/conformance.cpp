@@ -53,13 +53,11 @@ struct Case : Trial {
 };
 
 Case case_of(std::string name, Scene scene, double h, int steps, double limit = 0.01) {
-  // Momentum: rounding, and the 1e-10 to which the KKT system's residual is refined.
   return {{.scene = std::move(scene),
            .step = h,
            .steps = steps,
            .strain_limit = limit,
-           .energy_tolerance = -1,
-           .momentum_tolerance = 1e-9},
+           .energy_tolerance = -1},
           std::move(name)};
 }
 

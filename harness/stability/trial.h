@@ -54,7 +54,7 @@ struct Trial {
   // step of h seconds, which makes kinetic energy of up to M (1.5 slack / h)^2 / 2 on top of the
   // above (1.5: the velocity of BDF2; 1 for one-step methods).
   double slack = 0;
-  double momentum_tolerance = 1e-8;  // relative to what flows in a step
+  double momentum_tolerance = 1e-7;  // relative to what flows in a step
   // s of wall time, checked between steps. At its own step a trial ends by itself; the first limit
   // is for a busy machine. With smaller steps there is no other limit.
   double timeout = 60, timeout_smaller = 10;

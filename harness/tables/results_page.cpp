@@ -150,42 +150,6 @@ void print_planes(std::ostream& out, const std::vector<json>& sweeps) {
 
 // ---- Beside the planes ----
 
-// Exponents that are known to a quarter of a power.
-void print_growth(std::ostream& out, const std::vector<json>& sweeps) {
-  std::vector<Growth> all;
-  for (const json& sweep : sweeps) {
-    for (Growth& growth : growth_in(planes_of(sweep))) {
-      std::erase_if(growth.rows,
-                    [](const RowGrowth& row) { return !(row.exponent.half_width <= 0.25); });
-      if (!growth.rows.empty()) all.push_back(std::move(growth));
-    }
-  }
-  if (all.empty()) return;
-  Table table{{"solver"}};
-  std::vector<std::string> names;
-  for (const Growth& growth : all) {
-    table.head.push_back(scene_words(growth.scene) + " at " + percent(growth.strain_limit) +
-                         ", from " + number_text(growth.rows.front().smallest.vertices(), 7));
-    for (const RowGrowth& row : growth.rows) names.push_back(row.row);
-  }
-  for (const std::string& name : in_order(names, std::identity())) {
-    table.rows.push_back({name});
-    for (const Growth& growth : all) {
-      const auto row = std::ranges::find(growth.rows, name, &RowGrowth::row);
-      table.rows.back().push_back(
-          row == growth.rows.end() ? "-"
-                                   : exponent_words(row->exponent) + "; " +
-                                         time_words(row->largest.seconds() * row->largest.step()) +
-                                         " at " + number_text(row->largest.vertices(), 7));
-    }
-  }
-  print_table(out,
-              "## Growth\n\nThe time of a step, whatever the motion, grows as the number of "
-              "vertices to this power (95 % interval; exponents less certain than 0.25 are left "
-              "out); and what a step takes at the largest size",
-              table);
-}
-
 // Further measurements of a scene, from the fastest run of each ranked contestant.
 struct SceneTable {
   const char *scene, *title, *unit;
@@ -230,8 +194,8 @@ void print_scene(std::ostream& out, const NamedResult& result, const SceneTable&
   const Runs runs(result.document);
   std::vector<Point> fastest;
   std::ranges::copy_if(runs.points, std::back_inserter(fastest), [&](const Point& p) {
-    return p.sweep() == "strain" && !p.spec().adaptive && p.scene() == about.scene && p.ok() &&
-           p.result().best && runs.roles.of(p.contestant()).ranked();
+    return p.sweep() == "strain" && p.scene() == about.scene && p.ok() && p.result().best &&
+           runs.roles.of(p.contestant()).ranked();
   });
   if (fastest.empty()) return;
   std::vector<double> limits = in_order(fastest, [](const Point& p) { return p.strain_limit(); });
@@ -410,7 +374,6 @@ void print_results_page(std::ostream& out, const std::vector<NamedResult>& resul
          "six takes, if it is not of them. Bold: faster than each other one beyond the noise. "
          "`u`: with untuned settings. Errors are over the scene's size.\n\n";
   print_planes(out, sweeps);
-  print_growth(out, sweeps);
   for (const SceneTable& about : scene_tables) {
     for (const NamedResult& result : results) {
       if (!is_hard(result)) print_scene(out, result, about);

@@ -110,22 +110,6 @@ void print_everybody(std::ostream& out, const Plane& plane) {
   }
 }
 
-void print_growth(std::ostream& out, const Growth& growth) {
-  Table table{{"", "power (95 %)", "vertices", "ms a step", "GiB at the largest"}};
-  for (const RowGrowth& row : growth.rows) {
-    const Point& largest = row.largest;
-    table.rows.push_back(
-        {row.row, exponent_words(row.exponent),
-         number_text(row.smallest.vertices(), 7) + ".." + number_text(largest.vertices(), 7),
-         number_text(1e3 * largest.seconds() * largest.step(), 3),
-         number_text(largest.result().peak_rss_bytes / (1 << 30), 3)});
-  }
-  out << '\n'
-      << scene_words(growth.scene) << " at " << percent(growth.strain_limit)
-      << " strain, any motion: the time of a step grows as the number of vertices to a power\n";
-  print_aligned(out, table);
-}
-
 void print_failures(std::ostream& out, const Runs& runs, bool all) {
   std::map<std::string, int> statuses, of_contestants;
   int failed = 0;
@@ -188,15 +172,11 @@ void print_sweep(std::ostream& out, const json& document, const std::string& fil
   const Runs runs(document);
   const auto planes = planes_of(runs);
   print_grid(out, planes);
-  out << (planes.empty()
-              ? "\nall of these runs chose their steps by a controller, which is not ranked: "
-                "bench plot draws them\n"
-              : "(~: too close to the next, or too few samples, to tell; u: with untuned "
-                "settings; errors are over the scene's size)\n");
+  out << "(~: too close to the next, or too few samples, to tell; u: with untuned settings; errors "
+         "are over the scene's size)\n";
   for (const Plane& plane : planes) {
     if (all) print_everybody(out, plane);
   }
-  for (const Growth& growth : growth_in(planes)) print_growth(out, growth);
   for (const Finding& finding : findings_of(planes)) {
     out << '\n' << finding.subject << ":\n";
     for (const std::string& sentence : finding.sentences) out << sentence << '\n';

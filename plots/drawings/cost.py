@@ -1,15 +1,14 @@
 """What a simulated second costs over the strain limit or the resolution (the paper's Figures 4 and 5), of any motion and, where errors
-are known, beside it of motion that is right; beneath it the best steps and, where a collider takes part, the filter's own time. And
-what a step costs as cloth gets finer. The paper's axes are linear; with methods that differ a hundredfold such axes show the slowest
-alone."""
+are known, beside it of motion that is right; beneath it the best steps and, where a collider takes part, the filter's own time. The
+paper's axes are linear; with methods that differ a hundredfold such axes show the slowest alone."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from parts.axes import draw_slopes, grid, log_x, log_y
-from parts.curves import (Curve, Curves, Rows, add_strip, all_best, curves_in, draw_curves, draw_noise, draw_steps, ends_of,
+from parts.curves import (Curves, Rows, add_strip, all_best, curves_in, draw_curves, draw_noise, draw_steps, ends_of,
                           failed_rows, letters_in)
 from parts.result import Figures, Json, Result
 from parts.sheet import (BETWEEN, LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, ROW_HEIGHT, STEPS_HEIGHT, TIME_LABEL, Sheet, add_legend,
@@ -27,8 +26,6 @@ def figures_of(result: Result) -> Figures:
     for figure in result.analysis.get("curves", []):
         name = _name(figure, result.analysis["curves"])
         figures.append((name, draw, figure, result))
-        if figure["sweep"] == "resolution":
-            figures.append((f"{name}-growth", draw_growth, figure, result))
     return figures
 
 
@@ -36,9 +33,9 @@ def _name(figure: Json, all_figures: list[Json]) -> str:
     """"figure4a" for the scenes of the paper, "<scene>-<sweep>" for others; the fixed value only where two would clash."""
     number = NUMBERS_OF_THE_PAPER.get((figure["scene"], figure["sweep"]))
     name = f"figure{number}" if number else f"{file_part(scene_words(figure['scene']))}-{figure['sweep']}"
-    if sum(all(other[key] == figure[key] for key in ("scene", "sweep", "adaptive")) for other in all_figures) > 1:
+    if sum(all(other[key] == figure[key] for key in ("scene", "sweep")) for other in all_figures) > 1:
         name += f"-{'n' if figure['sweep'] == 'strain' else 'strain'}{figure['fixed']:g}"
-    return name + ("-adaptive" if figure["adaptive"] else "")
+    return name
 
 
 @dataclass(frozen=True)
@@ -61,23 +58,9 @@ def draw(figure: Json, result: Result) -> Figure:
     return _draw(figure, result, columns, styles, f"Figure {number} - {title}" if number else title, found)
 
 
-def draw_growth(figure: Json, result: Result) -> Figure:
-    """Time of a step over vertices, exponents in the labels, whatever steps and motion."""
-    scene, sweep = figure["scene"], figure["sweep"]
-    curves = {solver: Curve([replace(b, seconds=b.seconds * b.step, median=b.median * b.step, ladder_end="") for b in curve.best],
-                            curve.failures) for solver, curve in curves_in(figure["any"]).items()}
-    slopes = {row["row"]: row["exponent"] for growth in result.analysis["growth"]
-              if (growth["scene"], growth["strain_limit"]) == (scene, figure["fixed"]) for row in growth["rows"] if row["sizes"] > 2}
-    styles = {name: replace(style, label=f"{style.label}: {slopes[name]:.2f}") if name in slopes and style.leads else style
-              for name, style in styles_for(curves, result, result.leaders(scene, sweep)).items()}
-    column = Column(curves, {}, failed_rows(curves, styles), LEFT, "", "failed at every step")
-    found = [words for words in result.finding(scene, sweep) if words.startswith("From ")]
-    return _draw(figure, result, [column], styles, f"{scene_words(scene)}: growth of a step's time with vertices", found, growth=True)
-
-
-def _draw(figure: Json, result: Result, columns: list[Column], styles: Styles, title: str, found: list[str], growth: bool = False) -> Figure:
+def _draw(figure: Json, result: Result, columns: list[Column], styles: Styles, title: str, found: list[str]) -> Figure:
     strip = ROW_HEIGHT * max(len(column.rows) for column in columns)
-    beneath = 0 if growth else (STEPS_HEIGHT + BETWEEN) * (2 if columns[0].filter else 1)
+    beneath = (STEPS_HEIGHT + BETWEEN) * (2 if columns[0].filter else 1)
     sheet = make_sheet(result, title, [*receding_sentences(styles.values()), *_caption(figure, _points(figure, result), result, columns)],
                        columns[-1].left + MAIN_WIDTH + LEGEND_WIDTH, beneath + MAIN_HEIGHT + strip + (HEADING if len(columns) > 1 else 0),
                        legend_height(styles) - beneath - MAIN_HEIGHT, " ".join(found))
@@ -93,7 +76,7 @@ def _draw(figure: Json, result: Result, columns: list[Column], styles: Styles, t
         if len(columns) > 1:
             sheet.figure.text(box.x0, box.y1 + (strip + 0.17) / sheet.height, column.heading, fontsize=9, fontweight="bold",
                               va="bottom")
-    mains[0].set_ylabel("wall seconds of a step" if growth else TIME_LABEL)
+    mains[0].set_ylabel(TIME_LABEL)
     add_legend(mains[-1], styles, ends_of(columns[-1].curves))
     return sheet.figure
 
@@ -136,7 +119,7 @@ def _draw_column(sheet: Sheet, column: Column, styles: Styles, figure: Json, ben
     if beneath:
         lowest = sheet.axes(column.left, sheet.bottom, MAIN_WIDTH, STEPS_HEIGHT, sharex=main)
         draw_steps(lowest, column.curves, styles)
-        lowest.set_ylabel("mean time step (s)" if figure["adaptive"] else "best time step (s)")
+        lowest.set_ylabel("best time step (s)")
         grid(lowest)
     lowest.set_xlabel(AXIS_LABELS[figure["sweep"]])
     return main
@@ -148,9 +131,7 @@ def _caption(figure: Json, points: list[Json], result: Result, columns: list[Col
     if figure["sweep"] == "resolution":
         size += f", strain limit {percent(figure['fixed'])}"
     steps = "Each solver at its own best time step" + (" (panel of best steps)" if columns[0].heading else "")
-    if figure["adaptive"]:
-        steps = "Adaptive steps: from the coarsest one on, halved where the solver refuses it (panel of mean steps)"
-    elif len(columns) > 1:
+    if len(columns) > 1:
         steps = ("Each solver at its fastest time step, of any motion on the left, and on the right of those whose error is at most "
                  f"{percent(result.analysis['headline_error'])} of the scene's size (panels of best steps)")
     best = [best for column in columns for best in all_best(column.curves)]

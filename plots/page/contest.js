@@ -9,7 +9,7 @@
   for (const point of points) {
     if (point.sweep === "step" || !point.best || point.seconds === null) continue;
     const fixed = point.sweep === "strain" ? `${point.vertices} vertices` : percent(point.limit);
-    const name = `${words(point.scene)} over ${point.sweep}, ${fixed}${point.adaptive ? ", adaptive steps" : ""} (${data.files[point.file].name})`;
+    const name = `${words(point.scene)} over ${point.sweep}, ${fixed} (${data.files[point.file].name})`;
     if (!contests.has(name)) contests.set(name, []);
     contests.get(name).push(point);
   }

@@ -51,7 +51,8 @@ class ColoredEdges {
   // Positions by place: x, y and z apart. Places without a vertex copy vertex 0, so that they are
   // finite where it is. store() leaves pinned vertices alone.
   using Places = Eigen::MatrixX3d;
-  Places make_places() const { return Places::Zero(static_cast<Eigen::Index>(vertex_.size()), 3); }
+  using Displacements = Eigen::MatrixX3f;  // of places, m
+  Eigen::Index places() const { return static_cast<Eigen::Index>(vertex_.size()); }
   void load(const Positions& x, Places& places) const;
   void store(const Places& places, Positions& x) const;
 

@@ -22,7 +22,8 @@ class PbdSubsteps final : public VelocityFilter {
   StepResult apply(const Positions& x_start, double /*h*/, Iterate x, WorkCounters& work) override {
     passes_.load(x);
     if (along_ == Along::middle) passes_.take_middle_from(x_start);
-    for (int i = 0; i < most_; ++i) work.edge_projections += passes_.in_turn();
+    for (int i = 0; i < most_; ++i)
+      work.edge_projections += passes_.pass(StrainPasses::Order::in_turn);
     passes_.settle_contacts();
     if (!passes_.finite()) return {Status::not_finite, most_, -1, 0, "overflow"};
     passes_.store(x);

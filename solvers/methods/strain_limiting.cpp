@@ -101,7 +101,7 @@ class GaussSeidel final : public VelocityFilter {
         const double along = (d0 * m0 + d1 * m1 + d2 * m2) * edge.inverse_square,
                      square = (m0 * m0 + m1 * m1 + m2 * m2) * edge.inverse_square;
         if (along > least_alignment * q) {
-          excess = excess_along(q, along, square, wanted);
+          excess = excess_along(q - wanted * wanted, along, square);
           d0 = m0, d1 = m1, d2 = m2;
         }
       }

@@ -1,85 +1,82 @@
-// Edges come in groups of one color. A group is tested first; where none of its edges violates the
-// limit, which near convergence is most groups, square roots and divisions are left out, elsewhere
-// a mask keeps the edges within the limit as they are. Each step is a loop of fixed length without
-// branches, which compilers turn into a few vector instructions (GCC 12: two vectors of eight).
-// Square roots and divisions are 60 % of a pass that corrects every edge (floor_ratio in kernels).
+// Displacements. A step moves vertices by much less than an edge's length, so that single precision
+// resolves displacements u from a base x as finely as a strain limit asks. With D and d = D + e the
+// vectors of an edge at the base and displaced, and |D|^2 / l^2 - 1 from double,
+//   |d|^2 / l^2 - 1 = |D|^2 / l^2 - 1 + (D + d) . e / l^2,
+// in which nothing cancels: it is as exact as e. After `passes_from_a_base` the displaced positions
+// become the base, so that passes converge to any limit that double precision can test.
+//
+// Vectors. Edges come in groups of one color, one vector to each quantity of a group. A mask keeps
+// edges within the limit as they are; where a whole group is within it, which near convergence is
+// most of them, square roots and divisions are left out.
 #include "solvers/methods/strain_passes.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <experimental/simd>
+#include <map>
+#ifdef __SSE__
+#include <xmmintrin.h>
+#endif
 
 namespace inextensible {
 namespace {
 
-constexpr int width = ColoredEdges::width;
+using std::experimental::element_aligned;
+template <class Real>
+using Lanes = std::experimental::fixed_size_simd<Real, ColoredEdges::width>;
+template <class Real>
+[[gnu::always_inline]] inline Lanes<Real> lanes(const Real* from) {
+  return Lanes<Real>(from, element_aligned);
+}
 
-// x, y and z of both ends of a group's edges.
-struct Ends {
-  Ends(double* places, std::ptrdiff_t stride, int a, int b)
-      : ax(places + a),
-        ay(ax + stride),
-        az(ay + stride),
-        bx(places + b),
-        by(bx + stride),
-        bz(by + stride) {}
-  double *ax, *ay, *az, *bx, *by, *bz;
+// The ends of a group's edges: consecutive places, or any.
+struct Adjacent {
+  Adjacent(const int* first_a, const int* first_b) : a(*first_a), b(*first_b) {}
+  template <class Real>
+  [[gnu::always_inline]] static Lanes<Real> read(const Real* from, int first) {
+    return lanes(from + first);
+  }
+  [[gnu::always_inline]] static void write(const Lanes<float>& x, float* to, int first) {
+    x.copy_to(to + first, element_aligned);
+  }
+  int a, b;
+};
+struct Listed {
+  template <class Real>
+  static Lanes<Real> read(const Real* from, const int* places) {
+    return Lanes<Real>([&](int i) { return from[places[i]]; });
+  }
+  static void write(const Lanes<float>& x, float* to, const int* places) {
+    for (int i = 0; i < ColoredEdges::width; ++i) to[places[i]] = x[i];
+  }
+  const int *a, *b;
 };
 
-// Adds to the ends at `to` what corrects the edges between those at `from`; no place occurs twice.
-// `middle`: along the edges in the middle of the step from `start`.
-template <bool middle>
-inline int correct(const Ends& from, const Ends& start, const Ends& to,
-                   const double* inverse_square, const double* share_a, const double* share_b,
-                   const StrainBand& band) {
-  double q[width], excess[width];
-  [[maybe_unused]] double from_start[width];  // 1: along m, 0: along d
-  std::int64_t violations = 0;
-  for (int i = 0; i < width; ++i) {
-    const double d0 = from.bx[i] - from.ax[i];
-    const double d1 = from.by[i] - from.ay[i];
-    const double d2 = from.bz[i] - from.az[i];
-    q[i] = (d0 * d0 + d1 * d1 + d2 * d2) * inverse_square[i];
-    violations += band.violated(q[i]) && q[i] != 0 ? 1 : 0;
-  }
-  if (violations == 0) return 0;
-  for (int i = 0; i < width; ++i) {
-    const double wanted = q[i] < band.low ? band.target_low : band.target_high;
-    double all = 1 - wanted / std::sqrt(q[i]);
-    if constexpr (middle) {
-      const double d0 = from.bx[i] - from.ax[i], d1 = from.by[i] - from.ay[i],
-                   d2 = from.bz[i] - from.az[i];
-      const double m0 = 0.5 * (d0 + start.bx[i] - start.ax[i]),
-                   m1 = 0.5 * (d1 + start.by[i] - start.ay[i]),
-                   m2 = 0.5 * (d2 + start.bz[i] - start.az[i]);
-      const double p = (d0 * m0 + d1 * m1 + d2 * m2) * inverse_square[i];
-      const double r = (m0 * m0 + m1 * m1 + m2 * m2) * inverse_square[i];
-      const bool aligned = p > least_alignment * q[i];
-      all = aligned ? excess_along(q[i], p, r, wanted) : all;
-      from_start[i] = aligned ? 1 : 0;
-    }
-    excess[i] = band.violated(q[i]) && q[i] != 0 ? all : 0;
-  }
-#pragma GCC ivdep
-  for (int i = 0; i < width; ++i) {
-    double d0 = from.bx[i] - from.ax[i];
-    double d1 = from.by[i] - from.ay[i];
-    double d2 = from.bz[i] - from.az[i];
-    if constexpr (middle) {
-      const double half = 0.5 * from_start[i];
-      d0 += half * (start.bx[i] - start.ax[i] - d0);
-      d1 += half * (start.by[i] - start.ay[i] - d1);
-      d2 += half * (start.bz[i] - start.az[i] - d2);
-    }
-    const double sa = share_a[i] * excess[i], sb = share_b[i] * excess[i];
-    to.ax[i] += sa * d0;
-    to.ay[i] += sa * d1;
-    to.az[i] += sa * d2;
-    to.bx[i] -= sb * d0;
-    to.by[i] -= sb * d1;
-    to.bz[i] -= sb * d2;
-  }
-  return static_cast<int>(violations);
-}
+// While it exists, numbers too small for full precision count as zero. Passes carry displacements
+// on from edge to edge, ever smaller ones, and some processors take a hundred times as long for
+// these; others have no such switch and no need of it.
+class FlushSubnormals {
+ public:
+  FlushSubnormals(const FlushSubnormals&) = delete;
+  FlushSubnormals& operator=(const FlushSubnormals&) = delete;
+#ifdef __SSE__
+  FlushSubnormals() : before_(_mm_getcsr()) { _mm_setcsr(before_ | 0x8040U); }
+  ~FlushSubnormals() { _mm_setcsr(before_); }
+
+ private:
+  unsigned before_;
+#else
+  FlushSubnormals() = default;
+#endif
+};
+
+constexpr int passes_from_a_base = 64;
+
+// Rounding of a strain after displacements by a tenth of an edge, in q - 1; and the part of the
+// band that it may take at most.
+constexpr double strain_rounding = 5e-7, most_of_band = 0.01;
 
 }  // namespace
 
@@ -93,21 +90,33 @@ StrainPasses::StrainPasses(const Problem& problem, const StrainBand& band,
                            const std::vector<double>& share_a, const std::vector<double>& share_b)
     : edges_(problem),
       planes_(edges_, problem.contact_inside()),
-      band_(band),
-      inverse_square_(edges_.entries()),
-      share_a_(edges_.entries()),
-      share_b_(edges_.entries()),
-      x_(edges_.make_places()),
-      correction_(edges_.make_places()) {
-  for (int k = 0; k < edges_.entries(); ++k) {
-    const int edge = edges_.problem_edge()[k];
-    inverse_square_[k] = share_a_[k] = share_b_[k] = 0;  // q = 0: never corrected
-    if (edge < 0) continue;
-    const double l = problem.rest_length()[edge];
-    inverse_square_[k] = 1 / (l * l);
-    share_a_[k] = share_a[edge];
-    share_b_[k] = share_b[edge];
-    if (edges_.turned(k)) std::swap(share_a_[k], share_b_[k]);
+      inverse_square_(edges_.entries(), 0.0),
+      groups_(edges_.entries() / width, Group{}),
+      x_(Places::Zero(edges_.places(), 3)),
+      u_(Displacements::Zero(edges_.places(), 3)),
+      correction_(u_) {
+  const double low = std::min(band.low - 1, 0.0), high = std::max(band.high - 1, 0.0);
+  const double room = std::min(strain_rounding, most_of_band * high);
+  const auto square = [](double target) { return target * target - 1; };
+  bounds_ = {static_cast<float>(low + room), static_cast<float>(high - room),
+             static_cast<float>(std::max(square(band.target_low), low + 2 * room)),
+             static_cast<float>(std::min(square(band.target_high), high - 2 * room))};
+  using Key = std::array<float, sizeof(Constants) / sizeof(float)>;
+  std::map<Key, int> known;
+  for (int first = 0; first < edges_.entries(); first += width) {
+    Constants constants{};
+    for (int i = 0; i < width; ++i) {
+      const int k = first + i, edge = edges_.problem_edge()[k];
+      if (edge < 0) continue;
+      inverse_square_[k] = 1 / (problem.rest_length()[edge] * problem.rest_length()[edge]);
+      constants.inverse_square[i] = static_cast<float>(inverse_square_[k]);
+      constants.share_a[i] = static_cast<float>(share_a[edge]);
+      constants.share_b[i] = static_cast<float>(share_b[edge]);
+      if (edges_.turned(k)) std::swap(constants.share_a[i], constants.share_b[i]);
+    }
+    const auto [at, is_new] = known.emplace(std::bit_cast<Key>(constants), std::ssize(constants_));
+    if (is_new) constants_.push_back(constants);
+    constants_of_.push_back(at->second);
   }
 }
 
@@ -128,14 +137,16 @@ StepResult StrainPasses::limit(Order order, int most_passes, const EdgeConstrain
   load(x);
   for (int passes = 0;; ++passes) {
     const bool stops = gives_up(passes, most_passes);
-    const std::int64_t corrected = stops ? 0 : order == Order::in_turn ? in_turn() : at_once();
+    const std::int64_t corrected = stops ? 0 : pass(order);
     work.edge_projections += corrected;
     if (corrected > 0) {
       if (contacts_ && passes % 1024 == 1023) renew_planes(x, work);
       continue;
     }
+    const bool last = stops || exact();
     store(x);
-    return verdict(passes, stops ? "pass limit" : nullptr, edges, x);
+    const StepResult result = verdict(passes, stops ? "pass limit" : nullptr, edges, x);
+    if (result || last) return result;
   }
 }
 
@@ -153,23 +164,39 @@ void StrainPasses::renew_planes(Iterate x, WorkCounters& work) {
 
 void StrainPasses::load(Iterate x) {
   edges_.load(x, x_);
+  u_.setZero();
+  new_base();
   contacts_ = x.contacts();
   if (!contacts_) return;
   const Contacts::Timing measured = contacts_->timing();
   planes_.load(*contacts_, edges_);
 }
 
-void StrainPasses::store(Positions& x) const {
-  edges_.store(x_, x);
+void StrainPasses::store(Positions& x) {
+  edges_.store(positions(), x);
   if (!contacts_) return;
   const Contacts::Timing measured = contacts_->timing();
   planes_.store(*contacts_, edges_);
 }
 
+void StrainPasses::new_base() {
+  passes_ = 0;
+  planes_measured_ = false;
+}
+
+ColoredEdges::Places& StrainPasses::positions() {
+  x_ += u_.cast<double>();
+  u_.setZero();
+  new_base();
+  return x_;
+}
+
 void StrainPasses::settle_contacts() {
   if (!contacts_) return;
   const Contacts::Timing measured = contacts_->timing();
-  planes_.settle(x_);
+  if (!planes_measured_) planes_.measure(x_);
+  planes_measured_ = true;
+  planes_.settle(u_);
 }
 
 const ColoredEdges::Places* StrainPasses::held_normals() {
@@ -179,91 +206,148 @@ const ColoredEdges::Places* StrainPasses::held_normals() {
 }
 
 void StrainPasses::take_middle_from(const Positions& x_start) {
-  if (start_.rows() == 0) start_ = edges_.make_places();
+  start_.resize(edges_.places(), 3);
+  middles_.resize(groups_.size());
   edges_.load(x_start, start_);
-}
-
-std::int64_t StrainPasses::in_turn() {
-  settle_contacts();
-  return start_.rows() > 0 ? pass<true, true>(x_) : pass<true, false>(x_);
+  new_base();
 }
 
 StrainPasses::Passed StrainPasses::in_turn(int most, WorkCounters& work) {
   Passed done{1, 0};
   while (done.passes < most && done.left > 0) {
-    done.left = in_turn();
+    done.left = pass(Order::in_turn);
     work.edge_projections += done.left;
     ++done.passes;
   }
   return done;
 }
 
-std::int64_t StrainPasses::at_once() {
+std::int64_t StrainPasses::pass(Order order) {
+  const FlushSubnormals flush;
+  if (passes_ == passes_from_a_base) positions();
   settle_contacts();
-  const std::int64_t corrected =
-      start_.rows() > 0 ? pass<false, true>(correction_) : pass<false, false>(correction_);
+  const bool middle = start_.rows() > 0;
+  if (order == Order::in_turn) return middle ? pass<true>(u_) : pass<false>(u_);
+  const std::int64_t corrected = middle ? pass<true>(correction_) : pass<false>(correction_);
   if (corrected == 0) return 0;
-  x_ += correction_;
+  u_ += correction_;
   correction_.setZero();
   return corrected;
 }
 
-template <bool in_place, bool middle>
-std::int64_t StrainPasses::pass(ColoredEdges::Places& to) {
-  const int *a = edges_.a().data(), *b = edges_.b().data();
-  const std::ptrdiff_t stride = x_.rows();
+// One pass, which adds the corrections to `to`. The first from a base measures it.
+template <bool middle>
+std::int64_t StrainPasses::pass(Displacements& to) {
   std::int64_t corrected = 0;
-  for (const ColoredEdges::Block& block : edges_.blocks()) {
-    for (int k = block.first; k < block.first + block.count; k += width) {
-      const auto correct_at = [&](const Ends& x, const Ends& start, const Ends& sum) {
-        return correct<middle>(x, start, in_place ? x : sum, inverse_square_.data() + k,
-                               share_a_.data() + k, share_b_.data() + k, band_);
-      };
-      if (block.adjacent) {
-        const Ends x(x_.data(), stride, a[k], b[k]);
-        const Ends start = middle ? Ends(start_.data(), stride, a[k], b[k]) : x;
-        corrected += correct_at(x, start, {to.data(), stride, a[k], b[k]});
-        continue;
-      }
-      double gathered[3][6 * width];  // positions, sums, positions at the start
-      const auto gather = [&](const ColoredEdges::Places& places, double* out) {
-        for (int axis = 0; axis < 3; ++axis) {
-          const double* p = places.col(axis).data();
-          for (int i = 0; i < width; ++i) out[2 * axis * width + i] = p[a[k + i]];
-          for (int i = 0; i < width; ++i) out[(2 * axis + 1) * width + i] = p[b[k + i]];
-        }
-      };
-      gather(x_, gathered[0]);
-      double* out = gathered[in_place ? 0 : 1];
-      if (!in_place) gather(to, out);
-      if (middle) gather(start_, gathered[2]);
-      const int here =
-          correct_at({gathered[0], 2 * width, 0, width},
-                     {gathered[middle ? 2 : 0], 2 * width, 0, width}, {out, 2 * width, 0, width});
-      if (here == 0) continue;
-      corrected += here;
-      for (int axis = 0; axis < 3; ++axis) {
-        double* p = to.col(axis).data();
-        for (int i = 0; i < width; ++i) p[a[k + i]] = out[2 * axis * width + i];
-        for (int i = 0; i < width; ++i) p[b[k + i]] = out[(2 * axis + 1) * width + i];
-      }
-    }
+  for (const ColoredEdges::Block& block : edges_.blocks())
+    corrected +=
+        block.adjacent ? pass<middle, Adjacent>(block, to) : pass<middle, Listed>(block, to);
+  ++passes_;
+  return corrected;
+}
+
+template <bool middle, class Ends>
+std::int64_t StrainPasses::pass(const ColoredEdges::Block& block, Displacements& to) {
+  std::int64_t corrected = 0;
+  for (int k = block.first; k < block.first + block.count; k += width) {
+    const Ends ends{edges_.a().data() + k, edges_.b().data() + k};
+    if (passes_ == 0) measure<middle>(k, ends);
+    corrected += correct<middle>(k / width, ends, to);
   }
   return corrected;
 }
 
+template <bool middle, class Ends>
+[[gnu::always_inline]] inline void StrainPasses::measure(int k, const Ends& ends) {
+  using std::experimental::static_simd_cast;
+  Group& group = groups_[k / width];
+  const auto edge = [&](const Places& x, int axis) {
+    const double* from = x.data() + axis * x.rows();
+    return ends.read(from, ends.b) - ends.read(from, ends.a);
+  };
+  Lanes<double> square = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Lanes<double> d = edge(x_, axis);
+    square += d * d;
+    static_simd_cast<float>(d).copy_to(group.d[axis], element_aligned);
+    if constexpr (middle) {
+      const Lanes<double> m = 0.5 * (edge(start_, axis) + d);
+      static_simd_cast<float>(m).copy_to(middles_[k / width].m[axis], element_aligned);
+    }
+  }
+  const Lanes<double> strain = square * lanes(inverse_square_.data() + k) - 1;
+  static_simd_cast<float>(strain).copy_to(group.strain, element_aligned);
+}
+
+// Adds to the ends at `to` what corrects the edges between those at u_; no place occurs twice.
+// `middle`: along the edges in the middle of the step.
+template <bool middle, class Ends>
+[[gnu::always_inline]] inline int StrainPasses::correct(int k, const Ends& ends,
+                                                        Displacements& to) {
+  using std::experimental::where;
+  const Group& group = groups_[k];
+  const Constants& constants = constants_[constants_of_[k]];
+  Lanes<float> e[3], d[3];
+  Lanes<float> q = 0, growth = 0;
+  const Lanes<float> scale = lanes(constants.inverse_square);
+  for (int axis = 0; axis < 3; ++axis) {
+    const float* u = u_.data() + axis * u_.rows();
+    const Lanes<float> base = lanes(group.d[axis]);
+    e[axis] = ends.read(u, ends.b) - ends.read(u, ends.a);
+    d[axis] = base + e[axis];
+    q += d[axis] * d[axis];
+    growth += (base + d[axis]) * e[axis];
+  }
+  q *= scale;
+  const Lanes<float> strain = lanes(group.strain) + growth * scale;
+  Lanes<float> strained = strain - bounds_.target_high;
+  where(strain < bounds_.low, strained) = strain - bounds_.target_low;
+  const auto violated = !(strain >= bounds_.low && strain <= bounds_.high) && q != 0;
+  const int violations = popcount(violated);
+  if (violations == 0) return 0;
+  Lanes<float> along = q, square = q;
+  if constexpr (middle) {
+    Lanes<float> m[3];
+    Lanes<float> p = 0, r = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      m[axis] = lanes(middles_[k].m[axis]) + 0.5F * e[axis];
+      p += d[axis] * m[axis];
+      r += m[axis] * m[axis];
+    }
+    p *= scale;
+    const auto aligned = p > static_cast<float>(least_alignment) * q;
+    where(aligned, along) = p;
+    where(aligned, square) = r * scale;
+    for (int axis = 0; axis < 3; ++axis) where(aligned, d[axis]) = m[axis];
+  }
+  Lanes<float> s = excess_along(strained, along, square);
+  where(!violated, s) = 0;
+  const Lanes<float> sa = lanes(constants.share_a) * s, sb = lanes(constants.share_b) * s;
+  for (int axis = 0; axis < 3; ++axis) {
+    float* moved = to.data() + axis * to.rows();
+    ends.write(ends.read(moved, ends.a) + sa * d[axis], moved, ends.a);
+    ends.write(ends.read(moved, ends.b) - sb * d[axis], moved, ends.b);
+  }
+  return violations;
+}
+
 PlacedContacts::PlacedContacts(const ColoredEdges& edges, bool contact) {
   if (!contact) return;
-  normal_ = held_ = edges.make_places();
-  offset_.setZero(normal_.rows());
-  push_.setZero(normal_.rows());
-  blocks_.reserve(static_cast<std::size_t>(normal_.rows() / width));
+  normal_.setZero(edges.places(), 3);
+  held_ = normal_;
+  rounded_normal_.setZero(edges.places(), 3);
+  offset_.setZero(edges.places());
+  depth_.setZero(edges.places());
+  push_.setZero(edges.places());
+  blocks_.reserve(static_cast<std::size_t>(edges.places() / width));
 }
 
 void PlacedContacts::load(const Contacts& contacts, const ColoredEdges& edges) {
   for (const int first : blocks_) {
-    for (ColoredEdges::Places* p : {&normal_, &held_}) p->middleRows<width>(first).setZero();
-    for (Eigen::ArrayXd* a : {&offset_, &push_}) a->segment<width>(first).setZero();
+    normal_.middleRows<width>(first).setZero();
+    held_.middleRows<width>(first).setZero();
+    offset_.segment<width>(first).setZero();
+    push_.segment<width>(first).setZero();
   }
   blocks_.clear();
   for (int c = 0; c < contacts.count(); ++c) {
@@ -271,7 +355,7 @@ void PlacedContacts::load(const Contacts& contacts, const ColoredEdges& edges) {
     if (normal_.middleRows<width>(first).isZero(0)) blocks_.push_back(first);
     normal_.row(place) = contacts.normal(c).transpose();
     offset_[place] = -contacts.gap(c, Eigen::Vector3d::Zero());
-    push_[place] = contacts.push(c);
+    push_[place] = static_cast<float>(contacts.push(c));
   }
   std::sort(blocks_.begin(), blocks_.end());
 }
@@ -281,13 +365,22 @@ void PlacedContacts::store(Contacts& contacts, const ColoredEdges& edges) const 
     contacts.set_push(c, push_[edges.place(contacts.vertex(c))]);
 }
 
-void PlacedContacts::settle(ColoredEdges::Places& x) {
-  const std::ptrdiff_t stride = x.rows();
+void PlacedContacts::measure(const ColoredEdges::Places& base) {
   for (const int first : blocks_) {
-    const double* n = normal_.data() + first;
-    double* at = x.data() + first;
-    Contacts::visit({n, n + stride, n + 2 * stride}, offset_.data() + first, push_.data() + first,
-                    {at, at + stride, at + 2 * stride});
+    const auto normal = normal_.middleRows<width>(first).array();
+    const auto heights = (normal * base.middleRows<width>(first).array()).rowwise().sum();
+    depth_.segment<width>(first) = (offset_.segment<width>(first) - heights).cast<float>();
+    rounded_normal_.middleRows<width>(first) = normal.matrix().cast<float>();
+  }
+}
+
+void PlacedContacts::settle(ColoredEdges::Displacements& u) {
+  const std::ptrdiff_t stride = u.rows();
+  for (const int first : blocks_) {
+    const float* n = rounded_normal_.data() + first;
+    float* at = u.data() + first;
+    Contacts::visit<float>({n, n + stride, n + 2 * stride}, depth_.data() + first,
+                           push_.data() + first, {at, at + stride, at + 2 * stride});
   }
 }
 

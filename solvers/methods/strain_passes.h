@@ -1,8 +1,8 @@
 // Passes of strain corrections over colored edges, for jacobi, gauss_seidel_colored, pbd_substeps
-// and the projections with passes.
+// and the projections with passes. They are made in single precision, on displacements from a base
+// that is kept in double.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -28,11 +28,12 @@ struct StrainBand {
   double target_low, target_high;
 };
 
-// The s of |d - s m| = wanted, by the form that does not cancel: q = |d|^2, along = d . m and
-// square = |m|^2, m an edge in the middle of the step, all over its rest length.
-inline double excess_along(double q, double along, double square, double wanted) {
-  const double strained = q - wanted * wanted;
-  return strained / (along + std::sqrt(std::max(along * along - square * strained, 0.0)));
+// The s of |d - s m| = wanted, by the form that does not cancel: strained = |d|^2 - wanted^2,
+// along = d . m and square = |m|^2, m an edge in the middle of the step, all over its rest length.
+template <class Real>
+[[gnu::always_inline]] inline Real excess_along(Real strained, Real along, Real square) {
+  using std::max, std::sqrt;
+  return strained / (along + sqrt(max(along * along - square * strained, Real{0})));
 }
 
 // The planes of a step's contacts, side by side with the places of colored edges: passes settle
@@ -46,15 +47,19 @@ class PlacedContacts {
   // Reads the planes and pushes of `contacts`, needed again whenever those have changed.
   void load(const Contacts& contacts, const ColoredEdges& edges);
   void store(Contacts& contacts, const ColoredEdges& edges) const;  // the pushes
-  void settle(ColoredEdges::Places& x);                             // Contacts::settle(), at x
-  const ColoredEdges::Places& held_normals();  // as StrainPasses::held_normals()
+  void measure(const ColoredEdges::Places& base);  // displacements are counted from here on
+  void settle(ColoredEdges::Displacements& u);     // Contacts::settle(), at base + u
+  const ColoredEdges::Places& held_normals();      // as StrainPasses::held_normals()
 
  private:
   static constexpr int width = Contacts::lanes;  // places that are settled side by side
 
   std::vector<int> blocks_;  // first places of those blocks of `width` that have a contact
   ColoredEdges::Places normal_, held_;
-  Eigen::ArrayXd offset_, push_;
+  ColoredEdges::Displacements rounded_normal_;
+  Eigen::ArrayXd offset_;
+  Eigen::ArrayXf depth_;  // of the base below its plane, m
+  Eigen::ArrayXf push_;
 };
 
 class StrainPasses {
@@ -71,21 +76,27 @@ class StrainPasses {
   // Contacts of x are settled before each pass from now on, so that they hold wherever a pass finds
   // nothing to correct.
   void load(Iterate x);
-  void store(Positions& x) const;
+  void store(Positions& x);
   // From now on corrections point along the edges as they are in the middle of the step from
   // x_start (3 x n) to where they are. Until the first call they point along the edges as they are.
   void take_middle_from(const Positions& x_start);
-  bool finite() const { return x_.allFinite(); }
-  ColoredEdges::Places& positions() { return x_; }
+  bool finite() const { return u_.allFinite() && x_.allFinite(); }
+  ColoredEdges::Places& positions();  // to be read and moved before the next pass
   const ColoredEdges& edges() const { return edges_; }
+  // Whether the last pass saw strains from double, unless it has corrected some: where it found
+  // nothing, neither will another one from the positions as stored.
+  bool exact() const { return passes_ <= 1; }
   void settle_contacts();  // at positions()
   // Normals of planes that hold their vertex, by place, zero elsewhere; null: no contacts.
   const ColoredEdges::Places* held_normals();
 
   // One pass; returns how many edges it corrected. An edge of no length has no direction to be
   // corrected along and counts as none.
-  std::int64_t in_turn();  // in the order of edges(), each from where the last one left its ends
-  std::int64_t at_once();  // all from the same positions; the corrections are summed
+  enum class Order {
+    in_turn,  // in the order of edges(), each from where the last one left its ends
+    at_once   // all from the same positions; the corrections are summed
+  };
+  std::int64_t pass(Order order);
   // Passes in turn until one corrects nothing, at most `most` of them, all counted; `left`: what
   // the last one corrected, 1 if there was none.
   struct Passed {
@@ -97,7 +108,6 @@ class StrainPasses {
   // Passes until one finds nothing to correct, at most `most_passes`; the last one, which is the
   // test of convergence, is not counted. Refuses x if an edge (of `edges`, in any order) is still
   // beyond its limit.
-  enum class Order { in_turn, at_once };
   StepResult limit(Order order, int most_passes, const EdgeConstraints& edges, Iterate x,
                    WorkCounters& work);
   // Whether to stop after this many passes: at most `most`, fewer where positions overflow.
@@ -110,18 +120,52 @@ class StrainPasses {
                             const Positions& x);
 
  private:
+  static constexpr int width = ColoredEdges::width;
+
+  // Edges of one color side by side, at the base.
+  struct Group {
+    alignas(64) float d[3][width];  // m
+    float strain[width];            // |d|^2 / l^2 - 1
+  };
+  struct Middle {                   // of a group
+    alignas(64) float m[3][width];  // (d at the base + d at the start of the step) / 2
+  };
+  // What groups of equal edges have in common, so that less is read in a pass.
+  struct Constants {
+    alignas(64) float inverse_square[width];  // 1 / l^2; 0: no edge
+    float share_a[width], share_b[width];
+  };
+  struct Bounds {  // of q - 1
+    float low, high, target_low, target_high;
+  };
+  using Places = ColoredEdges::Places;
+  using Displacements = ColoredEdges::Displacements;
+
   void renew_planes(Iterate x, WorkCounters& work);
-  template <bool in_place, bool middle>
-  std::int64_t pass(ColoredEdges::Places& to);
+  void new_base();
+  template <bool middle>
+  std::int64_t pass(Displacements& to);
+  template <bool middle, class Ends>
+  std::int64_t pass(const ColoredEdges::Block& block, Displacements& to);
+  template <bool middle, class Ends>
+  void measure(int k, const Ends& ends);
+  template <bool middle, class Ends>
+  int correct(int k, const Ends& ends, Displacements& to);
 
   Contacts* contacts_ = nullptr;
   ColoredEdges edges_;
   PlacedContacts planes_;  // of contacts_
-  StrainBand band_;
-  Eigen::ArrayXd inverse_square_;  // 1 / l^2, by entry
-  Eigen::ArrayXd share_a_, share_b_;
-  ColoredEdges::Places x_, correction_;
-  ColoredEdges::Places start_;  // of the step; empty: middles are not asked for
+  Bounds bounds_;
+  std::vector<double> inverse_square_;  // by entry
+  std::vector<Group> groups_;
+  std::vector<Middle> middles_;  // empty: not asked for
+  std::vector<Constants> constants_;
+  std::vector<int> constants_of_;  // a group
+  Places x_;                       // the base
+  Places start_;                   // of the step; empty: middles are not asked for
+  Displacements u_, correction_;
+  int passes_ = 0;                // from this base
+  bool planes_measured_ = false;  // at this base
 };
 
 }  // namespace inextensible

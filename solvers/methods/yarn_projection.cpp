@@ -4,7 +4,9 @@
 // each yarn, and colored Gauss-Seidel passes over all edges between two rounds.
 //
 // A round is a pass over all yarns (yarn_pass.h), then passes over edges, until nothing is left to
-// correct or their number is reached.
+// correct or their number is reached. Where a pass over yarns finds as many links beyond the limit
+// as the last one, the next rounds go without: where a step takes vertices far, Newton's method may
+// diverge, and passes do not.
 //
 // fast_projection_adaptive adds fast projection's step for the whole cloth (equations 5 and 7 of
 // Goldenthal et al. 2007, with C~ for C): a yarn carries corrections along itself at once, but
@@ -17,6 +19,7 @@
 // Loops: three passes over links a yarn, one pass over edges; one assembly, one factorization and
 // one solve a projection of the whole.
 #include <algorithm>
+#include <limits>
 #include <memory>
 
 #include "solvers/methods/rows.h"
@@ -27,10 +30,10 @@
 namespace inextensible {
 namespace {
 
-// In visits of an edge by a pass, 1.3 ns, as kernels measures them: a link in a pass over yarns;
+// In visits of an edge by a pass, 0.7 ns, as kernels measures them: a link in a pass over yarns;
 // a row's assembly, gradient and correction; a number of the factor in a solve; an operation of a
 // factorization; a contact, settled.
-constexpr double link_cost = 3, row_cost = 12, nonzero_cost = 0.3, operation_cost = 0.06,
+constexpr double link_cost = 8, row_cost = 22, nonzero_cost = 0.55, operation_cost = 0.11,
                  contact_cost = 5;
 
 // Rounds in contact, after which passes alone end a step: Newton's method overshoots where a step
@@ -185,6 +188,7 @@ class YarnProjection final : public VelocityFilter {
     bool whole = whole_ && yarns_.crossing();
     Way way = whole ? experience_.choose() : rounds_alone;
     double cost = 0;
+    Pause pause;
     for (int rounds = 0;; ++rounds) {
       if (x.contact_count() > 0 && rounds == most_rounds_in_contact) {  // from the last x stored
         experience_ = {};
@@ -192,16 +196,12 @@ class YarnProjection final : public VelocityFilter {
         return passes_.limit(StrainPasses::Order::in_turn, most_passes_alone, edges_, x, work);
       }
       const bool stops = passes_.gives_up(rounds, max_iterations_);
-      passes_.settle_contacts();
-      const std::int64_t corrected =
-          stops ? 0 : yarns_.project(passes_.positions(), passes_.held_normals(), work);
-      work.edge_projections += corrected;
-      StrainPasses::Passed done{corrected, 0};
-      if (corrected > 0) done = passes_.in_turn(sweeps_, work);
-      const double round = (link_cost + done.passes) * edges_.count() +
+      const auto done = stops ? StrainPasses::Passed{0, 0} : round(pause, work);
+      const double spent = (link_cost + done.passes) * edges_.count() +
                            contact_cost * (1 + done.passes) * x.contact_count();
-      cost += round;
+      cost += spent;
       if (done.left == 0) {
+        const bool exact = passes_.exact();
         passes_.store(x);
         if (whole_ && !stops && x.contacts() && x.contacts()->find(x, work) > 0) {
           passes_.load(x);
@@ -209,6 +209,7 @@ class YarnProjection final : public VelocityFilter {
         }
         const StepResult result =
             StrainPasses::verdict(rounds, stops ? "round limit" : nullptr, edges_, x);
+        if (!result && !stops && !exact) continue;
         experience_.learn(way, cost);
         if (!result) experience_ = {};  // a refused step leaves nothing behind
         return result;
@@ -217,7 +218,7 @@ class YarnProjection final : public VelocityFilter {
       if (way == rounds_alone && experience_.too_expensive(rounds + 1, cost)) {
         experience_.learn(rounds_alone, 2 * cost);
         way = with_the_whole;
-        cost = round;
+        cost = spent;
       }
       if (way == with_the_whole) whole = whole_->project(passes_, x.contacts(), cost, work);
     }
@@ -231,6 +232,23 @@ class YarnProjection final : public VelocityFilter {
   }
 
  private:
+  struct Pause {                                                       // of yarns
+    std::int64_t violated = std::numeric_limits<std::int64_t>::max();  // links, at the last pass
+    int length = 1, rounds_left = 0;
+  };
+  StrainPasses::Passed round(Pause& pause, WorkCounters& work) {
+    if (pause.rounds_left > 0) {
+      --pause.rounds_left;
+      return passes_.in_turn(sweeps_, work);
+    }
+    passes_.settle_contacts();
+    const std::int64_t violated = yarns_.project(passes_.positions(), passes_.held_normals(), work);
+    work.edge_projections += violated;
+    if (violated >= pause.violated && sweeps_ > 0) pause.rounds_left = pause.length *= 2;
+    pause.violated = violated;
+    return violated > 0 ? passes_.in_turn(sweeps_, work) : StrainPasses::Passed{0, 0};
+  }
+
   EdgeConstraints edges_;
   Along along_;
   int max_iterations_;

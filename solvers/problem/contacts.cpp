@@ -119,8 +119,8 @@ void Contacts::settle(Positions& x) {
     for (int i = 0; i < here; ++i) {
       for (int axis = 0; axis < 3; ++axis) at[axis][i] = x(axis, vertex[i]);
     }
-    visit({&value(normal_x, first), &value(normal_y, first), &value(normal_z, first)},
-          &value(offset, first), &value(pushed, first), {at[0], at[1], at[2]});
+    visit<double>({&value(normal_x, first), &value(normal_y, first), &value(normal_z, first)},
+                  &value(offset, first), &value(pushed, first), {at[0], at[1], at[2]});
     for (int i = 0; i < here; ++i) {
       for (int axis = 0; axis < 3; ++axis) x(axis, vertex[i]) = at[axis][i];
     }

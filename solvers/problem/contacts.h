@@ -62,8 +62,8 @@ class Contacts {
   // One visit of contacts side by side, at x, y and z of their vertices: normals n and offsets of
   // planes, and pushes so far.
   static constexpr int lanes = 8;
-  static void visit(const double* const (&n)[3], const double* offset, double* push,
-                    double* const (&x)[3]);
+  template <class Real>
+  static void visit(const Real* const (&n)[3], const Real* offset, Real* push, Real* const (&x)[3]);
 
   // Takes from displacements d (3 x n, m) what leads through or out of a plane that holds its
   // vertex.
@@ -161,12 +161,13 @@ class Contacts {
 };
 
 // Without branches, so that compilers turn it into vector instructions.
-inline void Contacts::visit(const double* const (&n)[3], const double* offset, double* push,
-                            double* const (&x)[3]) {
+template <class Real>
+void Contacts::visit(const Real* const (&n)[3], const Real* offset, Real* push,
+                     Real* const (&x)[3]) {
 #pragma GCC ivdep
   for (int i = 0; i < lanes; ++i) {
-    const double gap = n[0][i] * x[0][i] + n[1][i] * x[1][i] + n[2][i] * x[2][i] - offset[i];
-    const double now = std::max(0.0, push[i] - gap), more = now - push[i];
+    const Real gap = n[0][i] * x[0][i] + n[1][i] * x[1][i] + n[2][i] * x[2][i] - offset[i];
+    const Real now = std::max(Real{0}, push[i] - gap), more = now - push[i];
     push[i] = now;
     x[0][i] += more * n[0][i];
     x[1][i] += more * n[1][i];

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -17,6 +19,9 @@ using Eigen::Vector3d;
 
 // Cells farther inside than this many cell diagonals ask all triangles.
 constexpr double deep_cells = 1;
+
+// Blocks of cells with this many planes at most are not divided.
+constexpr std::size_t short_list = 8;
 
 // Whether vertex v is no deeper than `depth` behind the plane that is remembered of it.
 inline bool in_front(const Collider::Memory& memory, const Eigen::Matrix3Xd& x, Eigen::Index v,
@@ -83,9 +88,15 @@ TriangleCollider::TriangleCollider(TriangleMesh mesh, double friction)
 }
 
 // A face's own normal; the sum of both faces' at an edge; the angle-weighted sum at a corner.
+// convex_: whether no edge is reentrant.
 void TriangleCollider::find_pseudonormals() {
+  struct AtEdge {
+    Vector3d sum = Vector3d::Zero();
+    int faces = 0, first_face = 0;
+  };
   std::vector<Vector3d> at_vertex(mesh_.vertices.size(), Vector3d::Zero());
-  std::map<std::pair<int, int>, std::pair<Vector3d, int>> at_edge;
+  std::map<std::pair<int, int>, AtEdge> at_edge;
+  convex_ = true;
   pseudonormal_.resize(mesh_.triangles.size());
   for (int f = 0; f < triangles(); ++f) {
     const auto& triangle = mesh_.triangles[f];
@@ -97,40 +108,46 @@ void TriangleCollider::find_pseudonormals() {
       const Vector3d next = (p[(i + 1) % 3] - p[i]).normalized(),
                      last = (p[(i + 2) % 3] - p[i]).normalized();
       at_vertex[triangle[i]] += std::acos(std::clamp(next.dot(last), -1.0, 1.0)) * normal;
-      auto& [sum, faces] =
-          at_edge.try_emplace(std::minmax(triangle[i], triangle[(i + 1) % 3]), Vector3d::Zero(), 0)
-              .first->second;
-      sum += normal;
-      ++faces;
+      AtEdge& edge = at_edge[std::minmax(triangle[i], triangle[(i + 1) % 3])];
+      edge.sum += normal;
+      if (edge.faces++ == 0) edge.first_face = f;
+      const Vector3d opposite = p[(i + 2) % 3] - p[i];
+      convex_ = convex_ && opposite.dot(pseudonormal_[edge.first_face][0]) <= 1e-9 * p[i].norm();
     }
   }
-  for (const auto& [edge, normal] : at_edge) {
-    if (normal.second != 2) {
-      throw std::invalid_argument(
-          "collider: edge (" + std::to_string(edge.first) + ", " + std::to_string(edge.second) +
-          ") has " + std::to_string(normal.second) + " triangles, a closed mesh has 2");
+  for (const auto& [ends, edge] : at_edge) {
+    if (edge.faces != 2) {
+      throw std::invalid_argument("collider: edge (" + std::to_string(ends.first) + ", " +
+                                  std::to_string(ends.second) + ") has " +
+                                  std::to_string(edge.faces) + " triangles, a closed mesh has 2");
     }
   }
   for (int f = 0; f < triangles(); ++f) {
     const auto& triangle = mesh_.triangles[f];
     for (std::size_t i = 0; i < 3; ++i) {
       pseudonormal_[f][1 + i] =
-          at_edge.at(std::minmax(triangle[i], triangle[(i + 1) % 3])).first.normalized();
+          at_edge.at(std::minmax(triangle[i], triangle[(i + 1) % 3])).sum.normalized();
       pseudonormal_[f][4 + i] = at_vertex[triangle[i]].normalized();
     }
   }
 }
 
+// A surface without reentrant edges that covers all directions from a point behind its faces, and
+// each of them once, is convex (Tietze 1928, Nakajima 1928).
 void TriangleCollider::check_orientation() {
-  double volume = 0;
-  convex_ = true;
+  Vector3d middle = Vector3d::Zero();
+  for (const Vector3d& v : mesh_.vertices) middle += v / static_cast<double>(mesh_.vertices.size());
+  double volume = 0, covered = 0;  // solid angle
   for (int f = 0; f < triangles(); ++f) {
-    const Vector3d& p = corner(mesh_, f, 0);
-    volume += p.dot((corner(mesh_, f, 1) - p).cross(corner(mesh_, f, 2) - p));
-    for (const Vector3d& v : mesh_.vertices) {
-      convex_ = convex_ && (v - p).dot(pseudonormal_[f][0]) <= 1e-9 * p.norm();
-    }
+    const Vector3d a = corner(mesh_, f, 0) - middle, b = corner(mesh_, f, 1) - middle,
+                   c = corner(mesh_, f, 2) - middle;
+    const double product = a.dot(b.cross(c));
+    volume += product;
+    convex_ = convex_ && product > 0;
+    covered += 2 * std::atan2(product, a.norm() * b.norm() * c.norm() + a.dot(b) * c.norm() +
+                                           b.dot(c) * a.norm() + c.dot(a) * b.norm());
   }
+  convex_ = convex_ && covered < 6 * std::numbers::pi;
   if (!(volume > 0)) {
     throw std::invalid_argument(
         "collider: the mesh is inside out; its triangles must be "
@@ -157,11 +174,59 @@ void TriangleCollider::lay_out_grid() {
   std::iota(all.begin(), all.end(), 0);
   cell_.assign(resolution * resolution * resolution, outside);
   lists_.push_back(all);  // deep
-  refine(Eigen::Vector3i::Zero(), resolution, all);
+  convex_ ? refine_planes(Eigen::Vector3i::Zero(), resolution, all)
+          : refine(Eigen::Vector3i::Zero(), resolution, all);
 }
 
 std::size_t TriangleCollider::cell_index(const Eigen::Vector3i& cell) const {
   return (cell[2] * resolution + cell[1]) * resolution + cell[0];
+}
+
+void TriangleCollider::fill(const Eigen::Vector3i& cell, int size, int list) {
+  for (int k = 0; k < size; ++k) {
+    for (int j = 0; j < size; ++j) {
+      for (int i = 0; i < size; ++i) cell_[cell_index(cell + Eigen::Vector3i(i, j, k))] = list;
+    }
+  }
+}
+
+// candidates: every plane that some point of the block of size^3 cells that begins at `cell` is
+// least behind. Those that it is behind farther than one of these all over the block go: tried are
+// planes of its corners and its centre. A block in front of one plane needs no other.
+void TriangleCollider::refine_planes(const Eigen::Vector3i& cell, int size,
+                                     const std::vector<int>& candidates) {
+  const Vector3d half = 0.5 * size * cell_size_;
+  const Vector3d centre = low_ + cell_size_.cwiseProduct(cell.cast<double>()) + half;
+  double distance = 0, unused = 0;
+  std::vector<int> found{least_behind(candidates, centre, distance)}, kept;
+  const auto spread = [&](const Eigen::RowVector4d& plane) {
+    return plane.head<3>().cwiseAbs().dot(half);
+  };
+  if (distance > spread(planes_[found[0]])) {
+    kept = found;
+  } else {
+    for (int octant = 0; octant < 8; ++octant) {
+      const Vector3d sign(octant & 1 ? 1 : -1, octant & 2 ? 1 : -1, octant & 4 ? 1 : -1);
+      const int nearest = least_behind(candidates, centre + half.cwiseProduct(sign), unused);
+      if (std::ranges::find(found, nearest) == found.end()) found.push_back(nearest);
+    }
+    std::ranges::copy_if(candidates, std::back_inserter(kept), [&](int candidate) {
+      return std::ranges::none_of(found, [&](int other) {
+        const Eigen::RowVector4d lead = planes_[other] - planes_[candidate];
+        return other != candidate && lead.head<3>().dot(centre) - lead[3] > spread(lead);
+      });
+    });
+  }
+  const bool deep_inside = distance < -half.norm() - deep_cells * cell_size_.norm();
+  if (size == 1 || kept.size() <= short_list || deep_inside) {
+    fill(cell, size, static_cast<int>(lists_.size()));
+    lists_.push_back(kept);
+    return;
+  }
+  for (int octant = 0; octant < 8; ++octant) {
+    const Eigen::Vector3i offset(octant & 1, (octant >> 1) & 1, octant >> 2);
+    refine_planes(cell + size / 2 * offset, size / 2, kept);
+  }
 }
 
 // candidates: every triangle that is nearest to some point of the block of size^3 cells that begins
@@ -180,14 +245,7 @@ void TriangleCollider::refine(const Eigen::Vector3i& cell, int size,
   if (least > half_diagonal) {  // the surface does not pass through
     const bool inside = nearest_among(candidates, centre).signed_distance < 0;
     if (!inside) return;
-    if (least > half_diagonal + deep_cells * cell_size_.norm()) {
-      for (int k = 0; k < size; ++k) {
-        for (int j = 0; j < size; ++j) {
-          for (int i = 0; i < size; ++i) cell_[cell_index(cell + Eigen::Vector3i(i, j, k))] = deep;
-        }
-      }
-      return;
-    }
+    if (least > half_diagonal + deep_cells * cell_size_.norm()) return fill(cell, size, deep);
   }
   std::vector<int> kept;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -255,7 +313,11 @@ int TriangleCollider::cell_at(const Vector3d& p) const {
 
 TriangleCollider::Nearest TriangleCollider::nearest(const Vector3d& p) const {
   const int cell = cell_at(p);
-  return cell == outside ? nearest_by_all(p) : nearest_among(lists_[cell], p);
+  if (cell != outside) {
+    const Nearest found = nearest_among(lists_[cell], p);
+    if (!convex_ || found.signed_distance <= 0) return found;
+  }
+  return nearest_by_all(p);
 }
 
 int TriangleCollider::least_behind(std::span<const int> list, const Vector3d& p,
@@ -291,18 +353,13 @@ bool TriangleCollider::touches(std::span<const int> list, const Vector3d& p, dou
   return true;
 }
 
-void TriangleCollider::show_outside(const Vector3d& p, Memory::RowXpr witness,
-                                    WorkCounters& work) const {
+void TriangleCollider::show_outside(const Vector3d& p, Memory::RowXpr witness) const {
   const Vector3d high = low_ + resolution * cell_size_;
   Eigen::Index axis = 0;
   if (const double beyond = (p - high).cwiseMax(low_ - p).maxCoeff(&axis); beyond > 0) {
     const bool above = p[axis] > high[axis];
     witness << 0, 0, 0, above ? high[axis] : -low_[axis];
     witness[axis] = above ? 1 : -1;
-  } else if (convex_) {
-    double distance = 0;
-    witness = planes_[least_behind(lists_[deep], p, distance)];
-    work.triangle_tests += triangles();
   }
 }
 
@@ -318,7 +375,7 @@ void TriangleCollider::find(const Eigen::Matrix3Xd& x, const std::vector<double>
       if (inverse_mass[v] == 0 || in_front(memory, x, v, depth)) continue;
       const int cell = cell_at(x.col(v));
       if (cell == outside) {
-        show_outside(x.col(v), memory.row(v), work);
+        show_outside(x.col(v), memory.row(v));
         continue;
       }
       const std::vector<int>& list = lists_[cell];

@@ -3,11 +3,11 @@
 //
 // A uniform grid over the mesh's box lists for each cell every triangle that is nearest to some
 // point of the cell (those no farther from its centre than the nearest one plus its diagonal),
-// found by refining an octree. Cells wholly outside are empty. Of a convex mesh the planes of these
-// triangles are enough: a point is inside if it is behind all of them, and its nearest point is its
-// foot on the plane that it is least behind. A plane that it is not behind, of a triangle or of
-// the box, shows that it is outside: the one that did so last is asked first, of several vertices
-// side by side.
+// found by refining an octree. Cells wholly outside are empty. Of a convex mesh planes are enough:
+// a point is inside if it is behind all of them, and its nearest point is its foot on the plane
+// that it is least behind, or most in front of; cells list only planes that can be this one.
+// A plane that a point is not behind, of a triangle or of the box, shows that it is outside: the
+// one that did so last is asked first, of several vertices side by side.
 #pragma once
 
 #include <array>
@@ -60,14 +60,15 @@ class TriangleCollider final : public Collider {
   void check_orientation();
   void lay_out_grid();
   void refine(const Eigen::Vector3i& cell, int size, const std::vector<int>& candidates);
+  void refine_planes(const Eigen::Vector3i& cell, int size, const std::vector<int>& candidates);
+  void fill(const Eigen::Vector3i& cell, int size, int list);
   // Whether p, of a cell that is not outside, is deeper than `depth` inside the mesh; if so,
   // `plane` keeps it out. Of a convex mesh `witness` is the plane that shows that it is not, or
   // will once it has pushed it out.
   bool touches(std::span<const int> list, const Eigen::Vector3d& p, double depth,
                ContactPlane& plane, Memory::RowXpr witness) const;
-  // A plane that p is in front of, and the mesh behind, if there is one: p is outside the box, or
-  // in one of its cells that is outside.
-  void show_outside(const Eigen::Vector3d& p, Memory::RowXpr witness, WorkCounters& work) const;
+  // If p is outside the box, a plane of the box that p is in front of.
+  void show_outside(const Eigen::Vector3d& p, Memory::RowXpr witness) const;
   // The triangle of the list whose plane p is least behind, or most in front of.
   int least_behind(std::span<const int> list, const Eigen::Vector3d& p, double& distance) const;
   int cell_at(const Eigen::Vector3d& p) const;  // of cell_; outside where p is outside the box

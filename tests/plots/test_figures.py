@@ -60,7 +60,7 @@ def test_no_words_run_out_of_a_figure(pictures: dict) -> None:
 # ---- cost -----------------------------------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("result, names", [
-    (resolution_sweep("flag"), ["flag-resolution", "flag-resolution-growth"]),
+    (resolution_sweep("flag"), ["flag-resolution"]),
     (document([point("shake", vertices=n, limit=limit, best=True, error={"trajectory": 0.2}) for n in (20, 80) for limit in (0.1, 0.01)]),
      ["figure4a-n20", "figure4a-n80", "plane-chain-n20", "plane-chain-n80"]),
     (document([point("shake", scene=scene, best=True, error={"trajectory": 0.2}) for scene in ("a/b", "a:b")]),
@@ -89,13 +89,10 @@ def test_the_fastest_run_of_any_motion_and_of_motion_that_is_right(pictures: dic
     assert (chosen[0][GREEN], chosen[1][GREEN]) == (0.1, 0.4)
 
 
-def test_cost_and_growth_over_resolution(pictures: dict) -> None:
-    figure, growth = pictures["resolution"]["figure5b"], pictures["resolution"]["figure5b-growth"]
+def test_cost_over_resolution(pictures: dict) -> None:
+    figure = pictures["resolution"]["figure5b"]
     assert [len(curves(axes)) for axes in panels(figure)] == [3, 3]
     assert [marks(strip) for strip in strips(figure)] == [["N"], ["N"]]
-    axes = axes_with(growth, "vertices (dotted", "wall seconds of a step")
-    assert {"SHAKE: 1.50", "fast projection: 1.00"} <= set(legend_labels(growth))
-    assert np.allclose(curves(axes, BLUE)[0].get_ydata(), [1e-4 * vertices * 0.01 for vertices in (100, 400, 1600)]), "times the step"
 
 
 @pytest.mark.parametrize("profile, complete, warning", [("quick", True, "QUICK PROFILE"), ("default", False, "INCOMPLETE")])
@@ -107,7 +104,7 @@ def test_warnings(profile: str, complete: bool, warning: str) -> None:
 
 # ---- uncertainty ----------------------------------------------------------------------------------------------------
 
-@pytest.mark.parametrize("make, name", [(strain_sweep, "figure4a"), (resolution_sweep, "figure5b-growth"), (step_sweep, "work-precision-chain")])
+@pytest.mark.parametrize("make, name", [(strain_sweep, "figure4a"), (resolution_sweep, "figure5b"), (step_sweep, "work-precision-chain")])
 def test_the_noise_of_a_pair_is_a_bar_and_the_second_no_curve(make, name: str) -> None:
     def bars(result: Json) -> list:
         figure = drawn(result)[name]

@@ -6,6 +6,8 @@
 namespace inextensible::testing {
 
 inline constexpr double h = 0.01;  // s, a time step
+// Of displacements of some metres, m, as passes in single precision leave them.
+inline constexpr double single_rounding = 1e-6;
 
 // An edge at rest along x, stretched or compressed to `length`.
 inline State stretched_edge(double length) {

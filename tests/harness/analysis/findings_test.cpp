@@ -49,52 +49,8 @@ TEST(Findings, NameTheFirstItsPriceAndTheBestOfThePaper) {
   }
 }
 
-json resolution_run(const std::string& solver, int n, double seconds_a_step) {
-  json p = run(solver, 0.01, 0.001, seconds_a_step / 0.001, 0.3, true);
-  p["id"] = solver + std::to_string(n);
-  p["sweep"] = "resolution";
-  p["scene"] = "drape";
-  p["resolution"] = n;
-  p["vertices"] = n * n;
-  p["scene_parameters"]["n"] = n;
-  return p;
-}
-
-// Two methods have runs at three sizes; a third one, whose steps all take the same time, at two.
-Growth growth_of(double yarn_power, double scatter) {
-  std::vector<json> points;
-  for (const int n : {1001, 101, 317}) {
-    const double off = n == 317 ? scatter : 1 / scatter;
-    points.push_back(
-        resolution_run("yarn_projection", n, off * 3e-7 * std::pow(n * n, yarn_power)));
-    points.push_back(resolution_run("icd", n, 3e-9 / off * std::pow(n * n, 1.5)));
-    if (n < 1000) points.push_back(resolution_run("shake", n, 1));
-  }
-  return growth_in(planes_of(document(points))).at(0);
-}
-
-TEST(Growth, RecoversAKnownExponent) {
-  const Growth found = growth_of(1.25, 1);
-  EXPECT_EQ(found.scene, "drape");
-  ASSERT_EQ(found.rows.size(), 3u);
-  EXPECT_EQ(found.rows[0].row, "shake") << "the slowest growth first";
-  const RowGrowth& yarns = found.rows[1];
-  EXPECT_EQ(yarns.row, "yarn_projection");
-  EXPECT_NEAR(yarns.exponent.value, 1.25, 1e-9);
-  EXPECT_LT(yarns.exponent.half_width, 1e-6);
-  EXPECT_EQ(yarns.smallest.spec().resolution, 101);
-  EXPECT_EQ(yarns.largest.spec().resolution, 1001);
-}
-
-// Exponents that may be equal, or anything, are not a finding.
-TEST(Growth, IsToldWhereIntervalsAreApart) {
-  EXPECT_NE(sentence_of(growth_of(1.25, 1.001)), "");
-  EXPECT_EQ(sentence_of(growth_of(1.5 - 1e-6, 1.001)), "") << "the same, as far as is known";
-  EXPECT_EQ(sentence_of(growth_of(1.25, 5)), "") << "anything";
-}
-
 // Some 95 % of 95 % intervals hold the truth. Fewer than 360 of 400 do with a chance below 1e-4.
-TEST(Growth, IntervalsHoldTheTruthAsOftenAsTheySay) {
+TEST(Slope, IntervalsHoldTheTruthAsOftenAsTheySay) {
   std::mt19937_64 random(7);
   std::normal_distribution<double> noise(0, 0.1);
   int inside = 0;

@@ -19,7 +19,6 @@ while read -r line; do
   eval "refused \"\${line%% <- *}\" $words"
 done <<'TABLE'
 did you mean 'strain' <- --sweep strian --out out.json
---steps adaptive does not go with <- --sweep step --profile quick --steps adaptive --out out.json
 no point is left <- SWEEP --filter nothing
 no case matches <- --sweep stability --case nothing --out out.json
 --filter goes with --sweep strain, resolution and step only (--case chooses <- --sweep stability --filter x --out out.json
@@ -31,7 +30,6 @@ is 'nan', must be a number above 0 <- SWEEP --timeout nan
 has one size <- SWEEP --n 10,20
 give --n <- --sweep resolution --profile quick --scene patch --out out.json
 leaves no step <- SWEEP --finest 0.05
-does not go with adaptive steps <- SWEEP --steps adaptive --finest 0.01
 '99999999999999999999', must be a whole number <- check --solver icd --seed 99999999999999999999
 cannot read the suite <- SUITE missing.json
 --finest-error needs references, missing: chain-n7 <- SUITE small.json --profile quick --scene chain --finest-error 0.02
@@ -71,12 +69,6 @@ assert "steps.json" in command and not any(word.startswith("/") for word in comm
 bench claims steps.json --markdown - >claims.txt && [[ $(grep -c '^| C' claims.txt) == 16 ]] || fail "claims has no 16 rows"
 holds 'd = read("steps.json"); d["points"] = []; json.dump(d, open("nothing.json", "w"))'
 refused "is what a claim is about" claims nothing.json
-# A step controller: one point a search, its rejections counted.
-makes adaptive.json "${sweep[@]}" --scene chain --steps adaptive --filter "strain:0.0"
-holds '
-points = read("adaptive.json")["points"]
-assert all(p["id"].endswith("h:adaptive") and p["status"] == "ok" for p in points)
-assert any(p["work"]["rejected_steps"] > 0 and p["smallest_step"] < p["step"] for p in points)'
 makes patch.json "${sweep[@]}" --scene patch --n 5 --limit 0.1,0.05  # not in the suite
 holds 'assert {(p["scene"], p["vertices"], p["strain_limit"]) for p in read("patch.json")["points"]} == {("patch", 25, 0.1), ("patch", 25, 0.05)}'
 

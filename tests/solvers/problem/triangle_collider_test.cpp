@@ -96,10 +96,22 @@ TEST(TriangleCollider, PushOutMovesWhatIsInsideToTheSurfaceWhateverTheFriction) 
       for (Vector3d& v : mesh.vertices) v = (stretch * v).eval();
       return mesh;
     };
+    // No edge of two bodies is reentrant either.
+    TriangleMesh two = ellipsoid(1);
+    const int one = static_cast<int>(two.vertices.size());
+    for (int v = 0; v < one; ++v) {
+      two.vertices.push_back(two.vertices[v] + Vector3d(1.4, 0, 0));
+      two.vertices[v] -= Vector3d(1.4, 0, 0);
+    }
+    for (std::size_t f = 0, faces = two.triangles.size(); f < faces; ++f) {
+      const auto [i, j, k] = two.triangles[f];
+      two.triangles.push_back({i + one, j + one, k + one});
+    }
     // And whether they are convex.
     const std::pair<TriangleMesh, bool> meshes[] = {{ellipsoid(0), true},
                                                     {ellipsoid(1), true},
                                                     {ellipsoid(3), true},
+                                                    {two, false},
                                                     {spiky(random, 2), false}};
     for (const auto& [mesh, convex] : meshes) {
       for (const double friction : {0.0, 0.3, 10.0}) {
