@@ -4,9 +4,7 @@
 // each yarn, and colored Gauss-Seidel passes over all edges between two rounds.
 //
 // A round is a pass over all yarns (yarn_pass.h), then passes over edges, until nothing is left to
-// correct or their number is reached. Where a pass over yarns finds as many links beyond the limit
-// as the last one, the next rounds go without: where a step takes vertices far, Newton's method may
-// diverge, and passes do not.
+// correct or their number is reached.
 //
 // fast_projection_adaptive adds fast projection's step for the whole cloth (equations 5 and 7 of
 // Goldenthal et al. 2007, with C~ for C): a yarn carries corrections along itself at once, but
@@ -19,7 +17,6 @@
 // Loops: three passes over links a yarn, one pass over edges; one assembly, one factorization and
 // one solve a projection of the whole.
 #include <algorithm>
-#include <limits>
 #include <memory>
 
 #include "solvers/methods/rows.h"
@@ -188,7 +185,6 @@ class YarnProjection final : public VelocityFilter {
     bool whole = whole_ && yarns_.crossing();
     Way way = whole ? experience_.choose() : rounds_alone;
     double cost = 0;
-    Pause pause;
     for (int rounds = 0;; ++rounds) {
       if (x.contact_count() > 0 && rounds == most_rounds_in_contact) {  // from the last x stored
         experience_ = {};
@@ -196,7 +192,7 @@ class YarnProjection final : public VelocityFilter {
         return passes_.limit(StrainPasses::Order::in_turn, most_passes_alone, edges_, x, work);
       }
       const bool stops = passes_.gives_up(rounds, max_iterations_);
-      const auto done = stops ? StrainPasses::Passed{0, 0} : round(pause, work);
+      const auto done = stops ? StrainPasses::Passed{0, 0} : round(work);
       const double spent = (link_cost + done.passes) * edges_.count() +
                            contact_cost * (1 + done.passes) * x.contact_count();
       cost += spent;
@@ -232,20 +228,10 @@ class YarnProjection final : public VelocityFilter {
   }
 
  private:
-  struct Pause {                                                       // of yarns
-    std::int64_t violated = std::numeric_limits<std::int64_t>::max();  // links, at the last pass
-    int length = 1, rounds_left = 0;
-  };
-  StrainPasses::Passed round(Pause& pause, WorkCounters& work) {
-    if (pause.rounds_left > 0) {
-      --pause.rounds_left;
-      return passes_.in_turn(sweeps_, work);
-    }
+  StrainPasses::Passed round(WorkCounters& work) {
     passes_.settle_contacts();
     const std::int64_t violated = yarns_.project(passes_.positions(), passes_.held_normals(), work);
     work.edge_projections += violated;
-    if (violated >= pause.violated && sweeps_ > 0) pause.rounds_left = pause.length *= 2;
-    pause.violated = violated;
     return violated > 0 ? passes_.in_turn(sweeps_, work) : StrainPasses::Passed{0, 0};
   }
 

@@ -393,11 +393,8 @@ bool TriangleCollider::plane_at(const Vector3d& p, ContactPlane& plane, WorkCoun
   const std::vector<int>& list = lists_[cell];
   work.triangle_tests += std::ssize(list);
   if (convex_) {
-    const auto behind = [&](int triangle) {
-      const double* t = planes_[triangle].data();
-      return t[3] - t[0] * p.x() - t[1] * p.y() - t[2] * p.z();
-    };
-    const Eigen::RowVector4d& least = planes_[*std::ranges::min_element(list, {}, behind)];
+    double unused = 0;
+    const Eigen::RowVector4d& least = planes_[least_behind(list, p, unused)];
     plane.normal = least.head<3>();
     plane.offset = least[3];
     return true;
