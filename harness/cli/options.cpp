@@ -118,7 +118,7 @@ void add_no_wait(const Command& to, bool& no_wait) {
           "stop instead of waiting if another program is timing runs on this machine");
 }
 
-std::vector<std::string> profiles() { return {"quick", "default", "paper", "large"}; }
+std::vector<std::string> profiles() { return {"quick", "default", "pairs", "paper", "large"}; }
 
 std::optional<Pattern> solver_pattern(const std::string& text, const Contestants& contestants) {
   if (text.empty()) return std::nullopt;

@@ -30,6 +30,7 @@ void read_steps(const json& steps, const std::string& where, SweepSpec& spec) {
   spec.coarsest = steps.value("coarsest", spec.coarsest);
   spec.finest = steps.value("finest", spec.finest);
   spec.every_step = steps.value("all", spec.every_step);
+  spec.refine = steps.value("refine", spec.refine);
   if (spec.finest > spec.coarsest)
     throw UsageError(where + ": 'steps': 'finest' is larger than 'coarsest'");
 }
@@ -70,6 +71,9 @@ SweepSpec read_sweep(const json& object, const std::string& where, const Tuned* 
       spec.resolutions = {static_cast<int>(complete.at(type->resolution))};
     fit_steps_to_duration(complete.at("duration"), steps.contains("coarsest"), spec);
     if (!solvers) spec.contestants = competitors(*type, spec.scene_parameters);
+    if (const std::string without = object.value("without", ""); !without.empty())
+      std::erase_if(spec.contestants, [drop = Pattern(where + ": 'without'", without)](
+                                          const Contestant& c) { return drop.matches(c.name); });
   } catch (const UsageError& error) {
     throw UsageError(where + ": 'scene_parameters': " + error.what());
   }
@@ -156,15 +160,18 @@ Suite read_suite(const std::string& path) { return parse_suite(read_file(path, "
 json to_json(const Suite& suite) {
   json sweeps = json::array();
   for (const SweepSpec& s : suite.sweeps) {
-    sweeps.push_back(
-        {{"sweep", s.sweep},
-         {"scene", s.scene},
-         {"solvers", s.contestants},
-         {"limits", s.limits},
-         {"resolutions", s.resolutions},
-         {"steps", {{"coarsest", s.coarsest}, {"finest", s.finest}, {"all", s.every_step}}},
-         {"scene_parameters", s.scene_parameters},
-         {"solver_options", s.solver_options}});
+    sweeps.push_back({{"sweep", s.sweep},
+                      {"scene", s.scene},
+                      {"solvers", s.contestants},
+                      {"limits", s.limits},
+                      {"resolutions", s.resolutions},
+                      {"steps",
+                       {{"coarsest", s.coarsest},
+                        {"finest", s.finest},
+                        {"all", s.every_step},
+                        {"refine", s.refine}}},
+                      {"scene_parameters", s.scene_parameters},
+                      {"solver_options", s.solver_options}});
   }
   json document = {{"name", suite.name},
                    {"description", suite.description},

@@ -25,7 +25,7 @@ struct SweepSpec {
   // Unless they are given, the ladder begins at the run's whole duration at most.
   double coarsest = 1.0 / 25, finest = 1.0 / 25600;  // s, ends of the step ladder
   bool every_step = false;  // the whole ladder instead of a search; step sweeps always do
-  bool refine = true;       // also try rungs between the halvings. Not in files
+  bool refine = true;       // also try rungs between the halvings
   SceneParameters scene_parameters;
   std::map<std::string, inextensible::Settings> solver_options;  // a contestant's own go first
 };

@@ -299,7 +299,11 @@ constexpr Impossible impossible_numbers[] = {
 }  // namespace
 
 std::map<std::string, std::vector<double>> hard_case_values(const std::string& profile) {
-  return hard_cases_document().at("values").at(profile);
+  const nlohmann::json& values = hard_cases_document().at("values");
+  std::vector<std::string> profiles;
+  for (const auto& [name, own] : values.items()) profiles.push_back(name);
+  check_known("profile of hard cases", profile, profiles);
+  return values.at(profile);
 }
 
 std::vector<HardCase> hard_cases(const std::string& profile) {

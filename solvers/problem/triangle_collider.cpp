@@ -314,7 +314,7 @@ int TriangleCollider::cell_at(const Vector3d& p) const {
 TriangleCollider::Nearest TriangleCollider::nearest(const Vector3d& p) const {
   const int cell = cell_at(p);
   if (cell != outside) {
-    const Nearest found = nearest_among(lists_[cell], p);
+    Nearest found = nearest_among(lists_[cell], p);
     if (!convex_ || found.signed_distance <= 0) return found;
   }
   return nearest_by_all(p);

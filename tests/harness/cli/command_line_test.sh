@@ -14,13 +14,14 @@ refused "nothing to do"
 # A line "PART <- ARGUMENTS" each. SWEEP and SUITE stand for what precedes most of them.
 while read -r line; do
   words=${line#* <- }
-  words=${words/SWEEP/--sweep strain --profile quick --out out.json --no-plots}
+  words=${words/SWEEP/--sweep strain --profile pairs --out out.json --no-plots}
   words=${words/SUITE/--sweep strain --out out.json --config}
   eval "refused \"\${line%% <- *}\" $words"
 done <<'TABLE'
 did you mean 'strain' <- --sweep strian --out out.json
 no point is left <- SWEEP --filter nothing
 no case matches <- --sweep stability --case nothing --out out.json
+no profile of hard cases <- --sweep stability --profile large --out out.json
 --filter goes with --sweep strain, resolution and step only (--case chooses <- --sweep stability --filter x --out out.json
 must be i/N <- SWEEP --shard 2
 i must be from 1 to N <- SWEEP --shard 3/2
@@ -28,12 +29,12 @@ is '1', must be a number above 0 and below 1 <- SWEEP --limit 0.01,1
 --memory <- SWEEP --memory much
 is 'nan', must be a number above 0 <- SWEEP --timeout nan
 has one size <- SWEEP --n 10,20
-give --n <- --sweep resolution --profile quick --scene patch --out out.json
+give --n <- --sweep resolution --profile pairs --scene patch --out out.json
 leaves no step <- SWEEP --finest 0.05
 '99999999999999999999', must be a whole number <- check --solver icd --seed 99999999999999999999
 cannot read the suite <- SUITE missing.json
---finest-error needs references, missing: chain-n7 <- SUITE small.json --profile quick --scene chain --finest-error 0.02
-there is no folder 'words.json' <- --sweep strain --profile quick --out words.json/result.json
+--finest-error needs references, missing: chain-n7 <- SUITE small.json --profile pairs --scene chain --finest-error 0.02
+there is no folder 'words.json' <- --sweep strain --profile pairs --out words.json/result.json
 there is no folder 'nowhere' <- film --out nowhere/x.png
 no option '--limt' <- SWEEP --limt 0.01
 unexpected argument 'two.json' of bench film (see bench film --help) <- film two.json
@@ -56,9 +57,9 @@ for document in '{"schema": "inextensible-bench/1"}' "$(head -c 100000 /dev/zero
 done
 
 # ---- Sweeps ----
-sweep=(--sweep strain --profile quick --no-plots --reps 1 --solver '^fast_projection$')
+sweep=(--sweep strain --profile pairs --no-plots --reps 1 --solver '^fast_projection$')
 # A step sweep: every point has an error and a sample; the file, which claims are judged from, names no folder of this machine.
-makes "$PWD/steps.json" --sweep step --profile quick --scene chain --solver 'rattle|^fast_projection$' --filter 'strain:0.0001/' --reps 1 --no-plots
+makes "$PWD/steps.json" --sweep step --profile pairs --scene chain --solver 'rattle|^fast_projection$' --filter 'strain:0.0001/' --reps 1 --no-plots
 holds '
 document = read("steps.json")
 ok = [p for p in document["points"] if p["status"] == "ok"]
@@ -75,7 +76,7 @@ holds 'assert {(p["scene"], p["vertices"], p["strain_limit"]) for p in read("pat
 # Google Benchmark's compare.py sets two solvers of one file against each other: rows match, and with nine runs its U test runs.
 compare=/usr/share/benchmark/compare.py
 if [[ -e $compare ]]; then
-  makes nine.json --sweep strain --profile quick --scene chain --solver 'icd|fast_projection' --filter 'strain:0.01/h:0.01$' --reps 9 --no-plots
+  makes nine.json --sweep strain --profile pairs --scene chain --solver 'icd|fast_projection' --filter 'strain:0.01/h:0.01$' --reps 9 --no-plots
   /usr/bin/python3 $compare filters nine.json chain/icd chain/fast_projection >table.txt
   grep -q 'vs. chain/fast_projection' table.txt && grep -q pvalue table.txt || fail "compare.py: $(cat table.txt)"
 fi

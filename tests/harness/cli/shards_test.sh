@@ -7,7 +7,7 @@ command -v parallel >/dev/null || exit 77
 ln -s "$BENCH_BINARY" bench
 mkdir -p results/local
 docs=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../../../docs/using.md
-sed -n '/^shards=/,/^```/p' "$docs" | sed '/^```/d; s/^shards=.*/shards=3/; s/--profile paper/--profile quick --scene chain --solver fast_projection --reps 1/' >recipe.sh
+sed -n '/^shards=/,/^```/p' "$docs" | sed '/^```/d; s/^shards=.*/shards=3/; s/--profile paper/--profile pairs --scene chain --solver fast_projection --reps 1/' >recipe.sh
 [[ $(wc -l <recipe.sh) == 3 ]]
 for time in first again; do
   bash -euo pipefail recipe.sh

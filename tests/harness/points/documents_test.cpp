@@ -90,7 +90,7 @@ void corrupt_and_read(const std::string& text, std::string (*read)(const std::st
 }
 
 TEST(Documents, CorruptedSuitesAreReadOrRefusedInALine) {
-  for (const char* name : {"quick.json", "default.json", "paper.json", "large.json"}) {
+  for (const char* name : {"quick.json", "default.json", "pairs.json", "paper.json", "large.json"}) {
     const std::string text =
         harness::read_file(std::string(SOURCE_DIR) + "/configs/" + name, "suite");
     ASSERT_EQ(read_as_suite(text), "") << name;
@@ -100,7 +100,7 @@ TEST(Documents, CorruptedSuitesAreReadOrRefusedInALine) {
 
 TEST(Documents, CorruptedResultsAreReadOrRefusedInALine) {
   std::vector<harness::PointResult> points;
-  const auto suite = harness::read_suite(std::string(SOURCE_DIR) + "/configs/quick.json");
+  const auto suite = harness::read_suite(std::string(SOURCE_DIR) + "/configs/pairs.json");
   for (const harness::Search& search : harness::plan(suite, {})) {
     points.emplace_back(search.base, harness::PointStatus::ok).samples = {0.5};
     points.back().best = true;

@@ -34,7 +34,7 @@ std::string misfit(const json& document, const std::string& schema) {
 }
 
 Suite tiny_suite() {
-  Suite suite = read_suite(source("configs/quick.json"));
+  Suite suite = read_suite(source("configs/pairs.json"));
   for (SweepSpec& sweep : suite.sweeps) {
     sweep.resolutions = {5};
     sweep.limits = {0.01};

@@ -23,7 +23,7 @@ example/rope >rope.txt || fail "the program of one's own: $(cat rope.txt)"
 "$bench" list solvers | grep -q symmetric && fail "a solver that was not loaded"
 
 tiny() {
-  "$bench" --plugin "$plugin" --sweep strain --profile quick --scene chain --n 20 --reps 1 --filter 'strain:0.01/' "$@"
+  "$bench" --plugin "$plugin" --sweep strain --profile pairs --scene chain --n 20 --reps 1 --filter 'strain:0.01/' "$@"
 }
 refused "did you mean 'symmetric_sweeps'" --plugin "$plugin" --sweep strain --solver symetric_sweeps --out out.json
 refused "no solver 'symmetric_sweeps'" --sweep strain --solver symmetric_sweeps --out out.json
@@ -31,7 +31,7 @@ refused "no solver 'symmetric_sweeps'" --sweep strain --solver symmetric_sweeps 
 tiny --exclude 'jacobi|icd|shake|rattle|springs|yarn_projection|adaptive|xpbd|bdf2|colored' --no-plots >sweep.txt 2>&1 || fail "a sweep: $(cat sweep.txt)"
 /usr/bin/python3 - <<'PYTHON' || fail "the sweep's file"
 import json
-document = json.load(open("results/local/quick-strain.json"))
+document = json.load(open("results/local/pairs-strain.json"))
 assert document["context"]["plugins"] == [
     {"file": "libmy_solver.so", "version": "1.0", "solvers": ["symmetric_sweeps"], "optimized": True}], document["context"]
 best = {p["solver"] for p in document["points"] if p["best"]}
@@ -55,7 +55,7 @@ cp installed/share/inextensible/configs/tuned.json .
 use() {
   local words=()
   case $1 in
-    sweep) words=(strain --profile quick --scene chain --dry-run) ;;
+    sweep) words=(strain --profile pairs --scene chain --dry-run) ;;
     show | results | budget) words=(small.json) ;;
     plot) words=(small.json --out drawn) ;;
     report) words=(small.json --out page.html) ;;
@@ -66,9 +66,9 @@ use() {
     claims) words=("$EXAMPLE/../../../../results/paper-strain-chain.json") ;;
     compare) words=(small.json small.json) ;;
     baseline) words=(small.json --out baseline.json) ;;
-    ab) words=("$bench" "$bench" --scene chain --solver fast_projection --filter 'strain:0.1/' --pairs 4 --sample-seconds 0.001) ;;
+    ab) words=("$bench" "$bench" --scene chain --solver fast_projection --filter 'strain:0.01/' --pairs 4 --sample-seconds 0.001) ;;
     tune) words=(--scene chain --solver icd --out tuned.json) ;;  # there already
-    reference) words=(--profile quick --scene chain) ;;           # there already
+    reference) words=(--profile pairs --scene chain) ;;           # there already
   esac
   "$bench" "$1" "${words[@]}" <point.txt
 }
@@ -92,7 +92,7 @@ refused "did you mean 'symmetric_sweeps'" --plugin "$plugin" check --solver syme
 
 # ---- What a row may lack ----
 sound() { printf '%s' "$kinds/libplugin_$1.so"; }
-"$bench" --plugin "$(sound bare)" --sweep strain --profile quick --reps 1 --filter 'strain:0.0*1/' --solver sound \
+"$bench" --plugin "$(sound bare)" --sweep strain --profile pairs --reps 1 --filter 'strain:0.0*1/' --solver sound \
   --no-plots --out bare.json >sweep.txt 2>&1 || fail "a solver without collider: $(cat sweep.txt)"
 /usr/bin/python3 - <<'PYTHON' || fail "a row that lacks a part"
 import json
@@ -106,10 +106,10 @@ grep -q '^sound conforms: ' check.txt && [[ $code == 0 ]] || fail "a sound solve
 
 # ---- Two versions of a plug-in, timed against each other ----
 "$bench" ab bench bench --old-plugin "$(sound plain)" --new-plugin "$(sound slow)" --scene drape \
-  --solver sound --filter 'strain:0.001/' --pairs 8 --confirm 8 --sample-seconds 0.02 >ab.txt 2>&1
+  --profile pairs --solver sound --filter 'strain:0.001/' --pairs 8 --confirm 8 --sample-seconds 0.02 >ab.txt 2>&1
 # A busy machine may leave it open, but never says that they are the same.
 [[ $? == [36] ]] && grep -Eq '^(SLOWER|AMBIGUOUS).*sound' ab.txt || fail "a plug-in that has become slower: $(cat ab.txt)"
-"$bench" --plugin "$(sound plain)" --sweep strain --profile quick --scene chain --solver sound --filter 'strain:0.1/' --untimed \
+"$bench" --plugin "$(sound plain)" --sweep strain --profile pairs --scene chain --solver sound --filter 'strain:0.1/' --untimed \
   --no-plots --out sound.json >sweep.txt 2>&1 || fail "a sound solver's sweep: $(cat sweep.txt)"
 /usr/bin/python3 -c 'import json; print(json.dumps(json.load(open("sound.json"))["points"][0]))' |
   "$bench" --plugin "$(sound loud)" point >point.json 2>loud.txt || fail "a point of a plug-in that prints: $(tail -n 1 loud.txt)"
