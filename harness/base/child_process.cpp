@@ -140,8 +140,9 @@ void answer_in(const OpenFile& file, const std::function<std::string(Heartbeat&)
   _exit(written ? 0 : 1);  // no destructors: the parent's objects are not ours
 }
 
-// Waits for the child, and ends it if it must not go on.
-void attend(Child& child, Heartbeat& heartbeat, const ChildLimits& limits, ChildOutcome& outcome) {
+// Waits for the child, which was made after the time `last`, and ends it if it must not go on.
+void attend(Child& child, double last, Heartbeat& heartbeat, const ChildLimits& limits,
+            ChildOutcome& outcome) {
   const double grace = 0.5 + 0.1 * limits.timeout;
   double terminated = 0;
   const auto terminate = [&](ChildOutcome::End why) {
@@ -149,7 +150,7 @@ void attend(Child& child, Heartbeat& heartbeat, const ChildLimits& limits, Child
     terminated = now();
     kill(child.id(), SIGTERM);
   };
-  for (double last = now(); !child.ended();) {
+  while (!child.ended()) {
     const double away = now() - last;
     last += away;
     if (away > stopped_for) heartbeat.begin = heartbeat.begin + away;
@@ -200,9 +201,10 @@ ChildOutcome run_in_child(const std::function<std::string(Heartbeat&)>& work,
   const long kills = out_of_memory_kills();
   std::cout.flush();  // or the child prints it as well
   std::fflush(stdout);
+  const double before = now();  // this process may be stopped before it attends to the child
   Child child([&] { answer_in(text, work, *heartbeat, limits.memory); });
   setpgid(child.id(), child.id());  // whichever process runs first
-  attend(child, *heartbeat, limits, outcome);
+  attend(child, before, *heartbeat, limits, outcome);
   kill(-child.id(), SIGKILL);  // what it has started and left behind
   const int status = child.status();
   outcome.peak_rss_bytes = 1024.0 * static_cast<double>(child.usage().ru_maxrss);
