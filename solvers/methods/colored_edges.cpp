@@ -172,18 +172,18 @@ void ColoredEdges::add_list(std::span<const Link> links) {
 }
 
 void ColoredEdges::load(const Positions& x, Places& places) const {
-  for (int axis = 0; axis < 3; ++axis) {
-    double* to = places.col(axis).data();
-    const double* from = x.data() + axis;
-    for (std::size_t k = 0; k < vertex_.size(); ++k) to[k] = from[3 * vertex_[k]];
+  double *to[3] = {places.col(0).data(), places.col(1).data(), places.col(2).data()};
+  for (std::size_t k = 0; k < vertex_.size(); ++k) {
+    const double* from = x.data() + 3 * vertex_[k];
+    for (int axis = 0; axis < 3; ++axis) to[axis][k] = from[axis];
   }
 }
 
 void ColoredEdges::store(const Places& places, Positions& x) const {
-  for (int axis = 0; axis < 3; ++axis) {
-    const double* from = places.col(axis).data();
-    double* to = x.data() + axis;
-    for (const int v : moving_) to[3 * v] = from[place_[v]];
+  const double* from[3] = {places.col(0).data(), places.col(1).data(), places.col(2).data()};
+  for (const int v : moving_) {
+    double* to = x.data() + 3 * v;
+    for (int axis = 0; axis < 3; ++axis) to[axis] = from[axis][place_[v]];
   }
 }
 

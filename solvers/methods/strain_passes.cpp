@@ -335,60 +335,77 @@ PlacedContacts::PlacedContacts(const ColoredEdges& edges, bool contact) {
   if (!contact) return;
   normal_.setZero(edges.places(), 3);
   held_ = normal_;
-  rounded_normal_.setZero(edges.places(), 3);
   offset_.setZero(edges.places());
-  depth_.setZero(edges.places());
-  push_.setZero(edges.places());
-  blocks_.reserve(static_cast<std::size_t>(edges.places() / width));
+  block_of_.assign(static_cast<std::size_t>(edges.places() / width), -1);
+  blocks_.reserve(block_of_.size());
 }
 
 void PlacedContacts::load(const Contacts& contacts, const ColoredEdges& edges) {
-  for (const int first : blocks_) {
-    normal_.middleRows<width>(first).setZero();
-    held_.middleRows<width>(first).setZero();
-    offset_.segment<width>(first).setZero();
-    push_.segment<width>(first).setZero();
+  for (const Block& block : blocks_) {
+    normal_.middleRows<width>(block.first).setZero();
+    held_.middleRows<width>(block.first).setZero();
+    offset_.segment<width>(block.first).setZero();
+    block_of_[block.first / width] = -1;
   }
   blocks_.clear();
-  for (int c = 0; c < contacts.count(); ++c) {
-    const int place = edges.place(contacts.vertex(c)), first = place - place % width;
-    if (normal_.middleRows<width>(first).isZero(0)) blocks_.push_back(first);
-    normal_.row(place) = contacts.normal(c).transpose();
-    offset_[place] = -contacts.gap(c, Eigen::Vector3d::Zero());
-    push_[place] = static_cast<float>(contacts.push(c));
+  for (int c = 0; c < contacts.count(); ++c) block_of_[edges.place(contacts.vertex(c)) / width] = 0;
+  for (std::size_t i = 0; i < block_of_.size(); ++i) {
+    if (block_of_[i] < 0) continue;
+    block_of_[i] = static_cast<int>(std::ssize(blocks_));
+    blocks_.emplace_back().first = static_cast<int>(i) * width;
   }
-  std::sort(blocks_.begin(), blocks_.end());
+  for (int c = 0; c < contacts.count(); ++c) {
+    const int place = edges.place(contacts.vertex(c)), i = place % width;
+    const Eigen::Vector3d normal = contacts.normal(c);
+    Block& block = blocks_[block_of_[place / width]];
+    for (int axis = 0; axis < 3; ++axis) {
+      normal_(place, axis) = normal[axis];
+      block.normal[axis][i] = static_cast<float>(normal[axis]);
+    }
+    offset_[place] = -contacts.gap(c, Eigen::Vector3d::Zero());
+    block.push[i] = static_cast<float>(contacts.push(c));
+  }
 }
 
 void PlacedContacts::store(Contacts& contacts, const ColoredEdges& edges) const {
-  for (int c = 0; c < contacts.count(); ++c)
-    contacts.set_push(c, push_[edges.place(contacts.vertex(c))]);
+  for (int c = 0; c < contacts.count(); ++c) {
+    const int place = edges.place(contacts.vertex(c));
+    contacts.set_push(c, blocks_[block_of_[place / width]].push[place % width]);
+  }
 }
 
 void PlacedContacts::measure(const ColoredEdges::Places& base) {
-  for (const int first : blocks_) {
-    const auto normal = normal_.middleRows<width>(first).array();
-    const auto heights = (normal * base.middleRows<width>(first).array()).rowwise().sum();
-    depth_.segment<width>(first) = (offset_.segment<width>(first) - heights).cast<float>();
-    rounded_normal_.middleRows<width>(first) = normal.matrix().cast<float>();
+  for (Block& block : blocks_) {
+    Lanes<double> depth = lanes(&offset_[block.first]);
+    for (int axis = 0; axis < 3; ++axis)
+      depth -= lanes(&normal_(block.first, axis)) * lanes(&base(block.first, axis));
+    std::experimental::static_simd_cast<float>(depth).copy_to(block.depth, element_aligned);
   }
 }
 
 void PlacedContacts::settle(ColoredEdges::Displacements& u) {
-  const std::ptrdiff_t stride = u.rows();
-  for (const int first : blocks_) {
-    const float* n = rounded_normal_.data() + first;
-    float* at = u.data() + first;
-    Contacts::visit<float>({n, n + stride, n + 2 * stride}, depth_.data() + first,
-                           push_.data() + first, {at, at + stride, at + 2 * stride});
+  for (Block& block : blocks_) {
+    Lanes<float> at[3], normal[3];
+    Lanes<float> gap = -lanes(block.depth);
+    for (int axis = 0; axis < 3; ++axis) {
+      at[axis] = lanes(&u(block.first, axis));
+      normal[axis] = lanes(block.normal[axis]);
+      gap += normal[axis] * at[axis];
+    }
+    Lanes<float> push = lanes(block.push);
+    const Lanes<float> more = Contacts::visit(gap, push);
+    push.copy_to(block.push, element_aligned);
+    for (int axis = 0; axis < 3; ++axis)
+      (at[axis] + more * normal[axis]).copy_to(&u(block.first, axis), element_aligned);
   }
 }
 
 const ColoredEdges::Places& PlacedContacts::held_normals() {
-  for (const int first : blocks_) {
+  for (const Block& block : blocks_) {
+    const auto holds = Eigen::Map<const Eigen::Array<float, width, 1>>(block.push) > 0;
     for (int axis = 0; axis < 3; ++axis) {
-      held_.col(axis).segment<width>(first) =
-          (push_.segment<width>(first) > 0).select(normal_.col(axis).segment<width>(first), 0);
+      held_.col(axis).segment<width>(block.first) =
+          holds.select(normal_.col(axis).segment<width>(block.first), 0);
     }
   }
   return held_;

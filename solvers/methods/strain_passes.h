@@ -32,8 +32,8 @@ struct StrainBand {
 // along = d . m and square = |m|^2, m an edge in the middle of the step, all over its rest length.
 template <class Real>
 [[gnu::always_inline]] inline Real excess_along(Real strained, Real along, Real square) {
-  using std::max, std::sqrt;
-  return strained / (along + sqrt(max(along * along - square * strained, Real{0})));
+  using std::sqrt;
+  return strained / (along + sqrt(positive_part(along * along - square * strained)));
 }
 
 // The planes of a step's contacts, side by side with the places of colored edges: passes settle
@@ -52,14 +52,19 @@ class PlacedContacts {
   const ColoredEdges::Places& held_normals();      // as StrainPasses::held_normals()
 
  private:
-  static constexpr int width = Contacts::lanes;  // places that are settled side by side
+  static constexpr int width = ColoredEdges::width;  // places that are settled side by side
 
-  std::vector<int> blocks_;  // first places of those blocks of `width` that have a contact
+  struct Block {
+    int first;  // place
+    alignas(64) float normal[3][width];
+    float depth[width];  // of the base below its plane, m
+    float push[width];
+  };
+
+  std::vector<Block> blocks_;  // those that have a contact
+  std::vector<int> block_of_;  // in blocks_, of each `width` places; -1: none
   ColoredEdges::Places normal_, held_;
-  ColoredEdges::Displacements rounded_normal_;
   Eigen::ArrayXd offset_;
-  Eigen::ArrayXf depth_;  // of the base below its plane, m
-  Eigen::ArrayXf push_;
 };
 
 class StrainPasses {

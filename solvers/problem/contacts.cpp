@@ -45,6 +45,7 @@ void Contacts::begin(const Positions& x_start, double time, double h) {
   const Timing measured = timing();
   for (int c = 0; c < count_; ++c) place_[vertex_[c]] = -1;
   count_ = 0;
+  clear_ = false;
   start_ = &x_start;
   h_ = h;
   if (!problem_.body_motion()) return;
@@ -119,8 +120,16 @@ void Contacts::settle(Positions& x) {
     for (int i = 0; i < here; ++i) {
       for (int axis = 0; axis < 3; ++axis) at[axis][i] = x(axis, vertex[i]);
     }
-    visit<double>({&value(normal_x, first), &value(normal_y, first), &value(normal_z, first)},
-                  &value(offset, first), &value(pushed, first), {at[0], at[1], at[2]});
+    const double* n[3] = {&value(normal_x, first), &value(normal_y, first),
+                          &value(normal_z, first)};
+    const double* offsets = &value(offset, first);
+    double* pushes = &value(pushed, first);
+#pragma GCC ivdep
+    for (int i = 0; i < lanes; ++i) {
+      const double height = n[0][i] * at[0][i] + n[1][i] * at[1][i] + n[2][i] * at[2][i];
+      const double more = visit(height - offsets[i], pushes[i]);
+      for (int axis = 0; axis < 3; ++axis) at[axis][i] += more * n[axis][i];
+    }
     for (int i = 0; i < here; ++i) {
       for (int axis = 0; axis < 3; ++axis) x(axis, vertex[i]) = at[axis][i];
     }
@@ -162,16 +171,15 @@ void Contacts::accept(const Positions& x) {
   if (candidate_.size() == 0) return;
   const Timing measured = timing();
   const double scale = 1 / (h_ * h_), edge = margin_ / margin;
-  expected_ = scale * (x - candidate_);
-  for (int c = 0; c < count_; ++c) expected_.col(vertex_[c]) -= scale * push(c) * normal(c);
-  const double *at = x.data(), *from = start_->data(), *now = expected_.data(),
-               *before = before_.data();
-  double *pressing = pressing_.data(), *pulling = pulling_.data();
+  for (int c = 0; c < count_; ++c) candidate_.col(vertex_[c]) += push(c) * normal(c);
+  const double *at = x.data(), *from = start_->data(), *without = candidate_.data();
+  double *before = before_.data(), *pressing = pressing_.data(), *pulling = pulling_.data();
 #pragma GCC ivdep
   for (Eigen::Index k = 0; k < 3 * x.cols(); k += 3) {
-    double squared = 0, both = 0, now_squared = 0, before_squared = 0;
+    double squared = 0, both = 0, now_squared = 0, before_squared = 0, now[3];
     for (int axis = 0; axis < 3; ++axis) {
-      const double moved = at[k + axis] - from[k + axis], a = now[k + axis], b = before[k + axis];
+      const double moved = at[k + axis] - from[k + axis], b = before[k + axis];
+      const double a = now[axis] = scale * (at[k + axis] - without[k + axis]);
       squared += moved * moved;
       both += a * b;
       now_squared += a * a;
@@ -181,12 +189,12 @@ void Contacts::accept(const Positions& x) {
     const double new_part = both > 0 && now_squared < before_squared ? 1 : 0;
     const double old_part = both > 0 ? 1 - new_part : 0;
     for (int axis = 0; axis < 3; ++axis) {
-      const double a = now[k + axis], b = before[k + axis];
+      const double a = now[axis], b = before[k + axis];
       pressing[k + axis] += weight * (a - pressing[k + axis]);
       pulling[k + axis] = new_part * a + old_part * b;
+      before[k + axis] = a;
     }
   }
-  before_.swap(expected_);
 }
 
 void Contacts::keep_in_planes(Positions& d) const {

@@ -20,6 +20,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -27,6 +28,13 @@
 #include "solvers/problem/stopwatch.h"
 
 namespace inextensible {
+
+// max(x, 0) of a number or of a vector of numbers; of vectors, compilers make a call of max().
+template <class Real>
+[[gnu::always_inline]] inline Real positive_part(const Real& x) {
+  using std::abs;
+  return Real(0.5F) * (x + abs(x));
+}
 
 class Contacts {
  public:
@@ -41,7 +49,7 @@ class Contacts {
   // planes): shortens the displacement of vertices along the surface. Vertices that are expected to
   // touch get a contact.
   void apply_friction(Positions& x0, WorkCounters& work);
-  // The candidate after it; empty without friction.
+  // The candidate after it, until accept(); empty without friction.
   const Positions& candidate() const { return candidate_; }
   // The step is accepted, and ended at x before the collision filter: what edges did to the
   // candidate is expected of them in the next step.
@@ -59,11 +67,14 @@ class Contacts {
   // Visits every contact once, at x (3 x n).
   void settle(Positions& x);
 
-  // One visit of contacts side by side, at x, y and z of their vertices: normals n and offsets of
-  // planes, and pushes so far.
-  static constexpr int lanes = 8;
+  // One visit of a contact, or of several side by side, whose vertex is `gap` above its plane.
+  // Returns by how much the push grows, which is how far the vertex moves along the normal.
   template <class Real>
-  static void visit(const Real* const (&n)[3], const Real* offset, Real* push, Real* const (&x)[3]);
+  [[gnu::always_inline]] static Real visit(const Real& gap, Real& push) {
+    const Real before = push;
+    push = positive_part(Real(before - gap));
+    return push - before;
+  }
 
   // Takes from displacements d (3 x n, m) what leads through or out of a plane that holds its
   // vertex.
@@ -79,8 +90,11 @@ class Contacts {
   Eigen::Vector3d end_velocity(int contact, const Eigen::Vector3d& mean,
                                const Eigen::Vector3d& own) const;
 
-  // The end of every step: leaves no vertex inside.
+  // The end of every step: leaves no vertex inside. Not needed where clear().
   void push_out(Positions& x, WorkCounters& work);
+  // The step is solved, and find() has found nothing at its end.
+  void set_clear() { clear_ = true; }
+  bool clear() const { return clear_; }
 
   // |x - x_start| in the norm of M, each vertex from where it began or from where the obstacle
   // would have carried it, whichever is nearer; and how much of it may come from edges that drift
@@ -134,6 +148,7 @@ class Contacts {
   void restore(const Record& record);
 
  private:
+  static constexpr int lanes = 8;  // contacts that settle() visits side by side
   double& value(Number number, int contact) { return numbers_[number][contact]; }
   double value(Number number, int contact) const { return numbers_[number][contact]; }
   void put(const ContactPlane& plane, WorkCounters& work);
@@ -148,6 +163,7 @@ class Contacts {
   // Motion of the obstacle during the step, and the step's length, s.
   Pose carry_;
   double h_ = 0;
+  bool clear_ = false;
   int count_ = 0;
   std::vector<int> vertex_;
   std::array<std::vector<double>, numbers> numbers_;  // filled up to whole lanes
@@ -159,21 +175,6 @@ class Contacts {
   // have done to vertices, m/s^2: in the last step; along surfaces; towards them.
   Positions candidate_, expected_, before_, pulling_, pressing_;
 };
-
-// Without branches, so that compilers turn it into vector instructions.
-template <class Real>
-void Contacts::visit(const Real* const (&n)[3], const Real* offset, Real* push,
-                     Real* const (&x)[3]) {
-#pragma GCC ivdep
-  for (int i = 0; i < lanes; ++i) {
-    const Real gap = n[0][i] * x[0][i] + n[1][i] * x[1][i] + n[2][i] * x[2][i] - offset[i];
-    const Real now = std::max(Real{0}, push[i] - gap), more = now - push[i];
-    push[i] = now;
-    x[0][i] += more * n[0][i];
-    x[1][i] += more * n[1][i];
-    x[2][i] += more * n[2][i];
-  }
-}
 
 // What the iterations of a step move: positions, and, where contact is inside the solve, the planes
 // that keep vertices out of the obstacle. Most methods only move vertices and call settle(); those

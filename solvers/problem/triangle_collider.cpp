@@ -307,8 +307,10 @@ TriangleCollider::Nearest TriangleCollider::nearest_among(std::span<const int> t
 
 int TriangleCollider::cell_at(const Vector3d& p) const {
   const Vector3d scaled = (p - low_).cwiseProduct(inverse_cell_size_);
-  const bool in_box = (scaled.array() >= 0).all() && (scaled.array() < resolution).all();
-  return in_box ? cell_[cell_index(scaled.cast<int>())] : outside;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(scaled[axis] >= 0 && scaled[axis] < resolution)) return outside;
+  }
+  return cell_[cell_index(scaled.cast<int>())];
 }
 
 TriangleCollider::Nearest TriangleCollider::nearest(const Vector3d& p) const {
@@ -337,7 +339,7 @@ int TriangleCollider::least_behind(std::span<const int> list, const Vector3d& p,
 }
 
 bool TriangleCollider::touches(std::span<const int> list, const Vector3d& p, double depth,
-                               ContactPlane& plane, Memory::RowXpr witness) const {
+                               Eigen::Index v, Memory& memory, ContactPlane& plane) const {
   if (!convex_) {
     const Nearest nearest = nearest_among(list, p);
     if (!(nearest.signed_distance < -depth)) return false;
@@ -346,11 +348,11 @@ bool TriangleCollider::touches(std::span<const int> list, const Vector3d& p, dou
     return true;
   }
   double distance = 0;
-  witness = planes_[least_behind(list, p, distance)];
-  if (!(distance < -depth)) return false;
-  plane.normal = witness.head<3>();
-  plane.offset = witness[3];
-  return true;
+  const double* least = planes_[least_behind(list, p, distance)].data();
+  for (int number = 0; number < 4; ++number) memory(v, number) = least[number];
+  plane.normal = {least[0], least[1], least[2]};
+  plane.offset = least[3];
+  return distance < -depth;
 }
 
 void TriangleCollider::show_outside(const Vector3d& p, Memory::RowXpr witness) const {
@@ -367,22 +369,22 @@ void TriangleCollider::find(const Eigen::Matrix3Xd& x, const std::vector<double>
                             double depth, Memory& memory, std::vector<ContactPlane>& planes,
                             WorkCounters& work) const {
   planes.clear();
-  ContactPlane plane;
   for (Eigen::Index first = 0; first < x.cols(); first += asked_at_once) {
     const Eigen::Index end = std::min(first + asked_at_once, x.cols());
     if (end == first + asked_at_once && outside_known(memory, x, first, depth)) continue;
     for (Eigen::Index v = first; v < end; ++v) {
       if (inverse_mass[v] == 0 || in_front(memory, x, v, depth)) continue;
-      const int cell = cell_at(x.col(v));
+      const Vector3d p = x.col(v);
+      const int cell = cell_at(p);
       if (cell == outside) {
-        show_outside(x.col(v), memory.row(v));
+        show_outside(p, memory.row(v));
         continue;
       }
       const std::vector<int>& list = lists_[cell];
       work.triangle_tests += std::ssize(list);
-      if (!touches(list, x.col(v), depth, plane, memory.row(v))) continue;
+      ContactPlane& plane = planes.emplace_back();  // in place: a copy waits for what it copies
       plane.vertex = static_cast<int>(v);
-      planes.push_back(plane);
+      if (!touches(list, p, depth, v, memory, plane)) planes.pop_back();
     }
   }
 }

@@ -62,11 +62,11 @@ class TriangleCollider final : public Collider {
   void refine(const Eigen::Vector3i& cell, int size, const std::vector<int>& candidates);
   void refine_planes(const Eigen::Vector3i& cell, int size, const std::vector<int>& candidates);
   void fill(const Eigen::Vector3i& cell, int size, int list);
-  // Whether p, of a cell that is not outside, is deeper than `depth` inside the mesh; if so,
-  // `plane` keeps it out. Of a convex mesh `witness` is the plane that shows that it is not, or
-  // will once it has pushed it out.
-  bool touches(std::span<const int> list, const Eigen::Vector3d& p, double depth,
-               ContactPlane& plane, Memory::RowXpr witness) const;
+  // Whether p, vertex v in a cell that is not outside, is deeper than `depth` inside the mesh; if
+  // so, `plane` keeps it out. Of a convex mesh v's row of `memory` is then the plane that shows
+  // that it is not, or will once it has pushed it out.
+  bool touches(std::span<const int> list, const Eigen::Vector3d& p, double depth, Eigen::Index v,
+               Memory& memory, ContactPlane& plane) const;
   // If p is outside the box, a plane of the box that p is in front of.
   void show_outside(const Eigen::Vector3d& p, Memory::RowXpr witness) const;
   // The triangle of the list whose plane p is least behind, or most in front of.

@@ -35,7 +35,7 @@ StepResult Stepper::attempt(State& state, double h) {
   const StepResult result = solve(with_pins_at_end(state, h), h, next_);
   work_.iterations += result.iterations;
   if (!result) return result;
-  if (contacts_) {
+  if (contacts_ && !contacts_->clear()) {
     Stopwatch stopwatch(phases_wanted_);
     filtered_ = next_;
     const Contacts::Timing measured = contacts_->timing();
@@ -49,7 +49,7 @@ StepResult Stepper::attempt(State& state, double h) {
   if (!end) return end;
   if (!std::isfinite(velocity_.sum()))
     return {Status::not_finite, result.iterations, -1, 0, "a velocity overflowed"};
-  if (contacts_) contacts_->accept(filtered_);
+  if (contacts_) contacts_->accept(filtered_positions());
   state.v.swap(velocity_);
   state.x = next_;
   state.time += h;

@@ -49,7 +49,9 @@ class Stepper {
 
   // Positions of the last accepted step after the inextensibility filter and before the collision
   // filter: where strain is measured. Meaningful until the next call of advance.
-  virtual const Positions& filtered_positions() const { return contacts_ ? filtered_ : next_; }
+  virtual const Positions& filtered_positions() const {
+    return contacts_ && !contacts_->clear() ? filtered_ : next_;
+  }
   // The contacts of the last step; null without a collider.
   const Contacts* contacts() const { return contacts_.get(); }
 

@@ -29,7 +29,10 @@ StepResult apply_until_clear(VelocityFilter& filter, Contacts* contacts, const P
     if (!result) return result;
     if (contacts->count() > 0 && !(contacts->distance(x) <= reach))
       return {Status::not_converged, iterations, -1, 0, "a spurious solution, far from the start"};
-    if (contacts->find(x, work) == 0) return result;
+    if (contacts->find(x, work) == 0) {
+      contacts->set_clear();
+      return result;
+    }
     if (round == most_rounds)
       return {Status::not_converged, iterations, -1, 0, "the contact set did not settle"};
   }
