@@ -7,16 +7,30 @@
 // the last pivot vanishes: pivots are kept from falling below a part of the diagonal.
 //
 // Yarns of one color are solved side by side, one in each lane of a vector (Thomas's algorithm in
-// step). Loops: two passes over links forwards and one back a yarn.
+// step). A link waits for the division of the one before it, so a yarn that has no company is
+// eliminated from both ends at once (van der Vorst 1987), and the links at its middle last. Loops:
+// two passes over links forwards and one back a yarn.
 #include "solvers/methods/yarn_pass.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace inextensible {
 namespace {
 
 constexpr double least_pivot = 1e-3;  // of the diagonal
+
+// The halves of a yarn, both towards its middle; the first has a link more if their number is odd.
+std::array<Yarn, 2> halves_of(const Yarn& yarn) {
+  const auto middle = std::ssize(yarn.edges) - std::ssize(yarn.edges) / 2;
+  return {{{{yarn.vertices.begin(), yarn.vertices.begin() + middle + 1},
+            {yarn.edges.begin(), yarn.edges.begin() + middle},
+            yarn.color},
+           {{yarn.vertices.rbegin(), yarn.vertices.rend() - middle},
+            {yarn.edges.rbegin(), yarn.edges.rend() - middle},
+            yarn.color}}};
+}
 
 }  // namespace
 
@@ -29,7 +43,11 @@ YarnPass::YarnPass(const Problem& problem, double strain_limit, double target,
   const std::vector<Yarn> yarns = yarns_of(problem);
   for (auto first = yarns.begin(), end = first; first != yarns.end(); first = end) {
     while (end != yarns.end() && end - first < lanes && end->color == first->color) ++end;
-    add_bundle(problem, {first, end});
+    if (end - first == 1) {
+      add_bundle(problem, halves_of(*first), true);
+    } else {
+      add_bundle(problem, {first, end}, false);
+    }
   }
   crossing_ = !yarns.empty() && yarns.front().color != yarns.back().color;
   int longest = 0;
@@ -37,21 +55,23 @@ YarnPass::YarnPass(const Problem& problem, double strain_limit, double target,
   rows_.resize(static_cast<std::size_t>(longest) + 1, Row{});
 }
 
-void YarnPass::add_bundle(const Problem& problem, std::span<const Yarn> yarns) {
-  const std::size_t links = yarns.front().edges.size();  // the longest comes first
-  bundles_.push_back({static_cast<int>(links), static_cast<int>(place_.size()) / lanes,
-                      static_cast<int>(yarns.size())});
-  for (std::size_t i = 0; i <= links; ++i) {
+// Null links come after a yarn, and before the half of one, whose last link is at the middle.
+void YarnPass::add_bundle(const Problem& problem, std::span<const Yarn> yarns, bool joined) {
+  const auto links = static_cast<int>(yarns.front().edges.size());  // the longest comes first
+  bundles_.push_back(
+      {links, static_cast<int>(place_.size()) / lanes, static_cast<int>(yarns.size()), joined});
+  for (int i = 0; i <= links; ++i) {
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       // A lane without a yarn stays at the first one's begin, a short yarn at its end.
       const bool taken = lane < yarns.size();
       const Yarn& yarn = yarns[taken ? lane : 0];
-      const std::size_t count = taken ? yarn.edges.size() : 0;
-      const int vertex = yarn.vertices[std::min(i, count)];
-      const bool link = i < count;
+      const int count = taken ? static_cast<int>(yarn.edges.size()) : 0;
+      const int k = joined ? i - (links - count) : i;
+      const int vertex = yarn.vertices[std::clamp(k, 0, count)];
+      const bool link = k >= 0 && k < count;
       place_.push_back(places_.place(vertex));
-      inverse_mass_.push_back(taken && i <= count ? problem.inverse_mass()[vertex] : 0);
-      rest_.push_back(link ? problem.rest_length()[yarn.edges[i]] : 0);
+      inverse_mass_.push_back(taken && k >= 0 && k <= count ? problem.inverse_mass()[vertex] : 0);
+      rest_.push_back(link ? problem.rest_length()[yarn.edges[k]] : 0);
       inverse_rest_.push_back(link ? 1 / rest_.back() : 0);
     }
   }
@@ -59,16 +79,23 @@ void YarnPass::add_bundle(const Problem& problem, std::span<const Yarn> yarns) {
 
 void YarnPass::take_middle_from(const Positions& x_start) {
   start_g_.resize(3 * place_.size());
-  for (std::size_t at = 0; at + lanes < place_.size(); ++at) {
-    double* g = start_g_.data() + 3 * (at - at % lanes) + at % lanes;
-    const Eigen::Vector3d d =
-        x_start.col(places_.vertex(place_[at + lanes])) - x_start.col(places_.vertex(place_[at]));
-    for (int axis = 0; axis < 3; ++axis) g[axis * lanes] = d[axis] * inverse_rest_[at];
+  for (const Bundle& bundle : bundles_) {
+    for (int row = bundle.first; row < bundle.first + bundle.links; ++row) {
+      const int* place = place_.data() + row * lanes;
+      double* g = start_g_.data() + 3 * row * lanes;
+      for (int i = 0; i < bundle.used; ++i) {
+        const double* a = x_start.data() + 3 * places_.vertex(place[i]);
+        const double* b = x_start.data() + 3 * places_.vertex(place[lanes + i]);
+        for (int axis = 0; axis < 3; ++axis)
+          g[axis * lanes + i] = (b[axis] - a[axis]) * inverse_rest_[row * lanes + i];
+      }
+    }
   }
 }
 
 struct YarnPass::View {
   int links;
+  bool joined;
   const int* place;
   const double *w, *l, *il;  // inverse masses; rest lengths and their inverses
   const double* start_g;     // where the middle of the step is asked for
@@ -162,6 +189,22 @@ void YarnPass::eliminate(const View& yarns, const double (&solved)[lanes]) {
   }
 }
 
+// The multipliers of the last links of two halves, which share the vertex in the middle: both links
+// lead there, so their coupling has the sign of its mass.
+template <bool contact>
+void YarnPass::join(const View& halves) {
+  Row& row = rows_[halves.links];
+  double coupled =
+      row.g[0][0] * row.g[0][1] + row.g[1][0] * row.g[1][1] + row.g[2][0] * row.g[2][1];
+  if constexpr (contact) coupled -= row.along[0] * row.along[1];
+  const double off = halves.w[halves.links * lanes] * coupled;
+  const double factor = off * row.inverse_pivot[0], diagonal = 1 / row.inverse_pivot[1];
+  const double pivot = std::max(diagonal - factor * off, least_pivot * diagonal);
+  row.c[1] = (row.c[1] - factor * row.c[0]) / pivot;
+  row.c[0] = (row.c[0] - off * row.c[1]) * row.inverse_pivot[0];
+  row.inverse_pivot[0] = row.inverse_pivot[1] = 1;
+}
+
 // Multipliers from the last link to the first, and x -= W J^T mu on the way.
 template <int used>
 void YarnPass::substitute(const View& yarns) const {
@@ -194,17 +237,20 @@ std::int64_t YarnPass::project(const View& yarns, WorkCounters& work) {
   alignas(64) double violated[lanes] = {};
   linearize<used, middle>(yarns, violated);
   double all = 0, solved[lanes];
+  for (int i = 0; i < used; ++i) all += violated[i];
+  if (all == 0) return 0;
   int projected = 0;
   for (int i = 0; i < used; ++i) {
-    all += violated[i];
-    solved[i] = violated[i] > 0 ? 1 : 0;
-    projected += static_cast<int>(violated[i] > 0);
+    const bool beyond = yarns.joined || violated[i] > 0;
+    solved[i] = beyond ? 1 : 0;
+    projected += beyond ? 1 : 0;
   }
-  if (projected == 0) return 0;
+  if (yarns.joined) projected = 1;
   work.assemblies += projected;
   work.factorizations += projected;
   work.back_solves += projected;
   eliminate<used, contact>(yarns, solved);
+  if (yarns.joined) join<contact>(yarns);
   substitute<used>(yarns);
   return static_cast<std::int64_t>(all);
 }
@@ -216,6 +262,7 @@ std::int64_t YarnPass::project(ColoredEdges::Places& x, const ColoredEdges::Plac
   for (const Bundle& bundle : bundles_) {
     const std::size_t first = static_cast<std::size_t>(bundle.first) * lanes;
     View yarns{bundle.links,
+               bundle.joined,
                place_.data() + first,
                inverse_mass_.data() + first,
                rest_.data() + first,
@@ -230,7 +277,7 @@ std::int64_t YarnPass::project(ColoredEdges::Places& x, const ColoredEdges::Plac
                      : (middle ? project<used, false, true>(yarns, work)
                                : project<used, false, false>(yarns, work));
     };
-    violated += bundle.yarns == 1 ? project_by.operator()<1>() : project_by.operator()<lanes>();
+    violated += bundle.joined ? project_by.operator()<2>() : project_by.operator()<lanes>();
   }
   return violated;
 }

@@ -45,11 +45,13 @@ class YarnPass {
 
  private:
   static constexpr int lanes = 8;
-  // Yarns of one color side by side, one a lane; shorter ones are padded with null links.
+  // Yarns of one color side by side, one a lane; shorter ones are padded with null links. A yarn
+  // alone is `joined` in its middle: two lanes lead there from its ends.
   struct Bundle {
-    int links, first, yarns;  // first: row of vertices and links in the arrays below
+    int links, first, used;  // first: row of vertices and links in the arrays below; used: lanes
+    bool joined;
   };
-  void add_bundle(const Problem& problem, std::span<const Yarn> yarns);
+  void add_bundle(const Problem& problem, std::span<const Yarn> yarns, bool joined);
   struct View;  // of a bundle and the positions
   template <int used, bool contact, bool middle>
   std::int64_t project(const View& yarns, WorkCounters& work);
@@ -57,6 +59,8 @@ class YarnPass {
   void linearize(const View& yarns, double (&violated)[lanes]);
   template <int used, bool contact>
   void eliminate(const View& yarns, const double (&solved)[lanes]);
+  template <bool contact>
+  void join(const View& halves);
   template <int used>
   void substitute(const View& yarns) const;
 
