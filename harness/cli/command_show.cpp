@@ -46,8 +46,7 @@ std::string head_of(const json& document, const std::string& file) {
       << build.at("git").get<std::string>().substr(0, 12)
       << (build.value("dirty", false) ? " with changes" : "") << ", "
       << build.at("compiler").get<std::string>() << '\n';
-  if (!document.value("complete", true))
-    out << "not complete: a run was interrupted, or a shard is missing\n";
+  if (!document.value("complete", true)) out << "not complete: a run was interrupted\n";
   if (!is_timed(document)) out << "made with --untimed: its times mean nothing\n";
   return out.str();
 }

@@ -64,7 +64,6 @@ void add_cells_of(const json& result, Journal& journal) {
 }
 
 struct SweepCommand : SweepOptions, OutputOptions {
-  std::string shard_text;
   double memory = 0;  // bytes; 0: no limit
   bool dry_run = false, no_wait = false;
   std::string hard_case;        // with --sweep stability
@@ -75,9 +74,6 @@ struct SweepCommand : SweepOptions, OutputOptions {
     of_cases = command.group("with --sweep stability");
     SweepOptions::declare(command, of_suites);
     OutputOptions::declare(command, "<profile>-<axis>.json");
-    command.option("--shard", shard_text,
-                   "i/N: the i-th of N parts; all solvers of a scene and size are in one part",
-                   "I/N");
     command.flag("--dry-run", dry_run, "print what would run and how long, and stop");
     add_no_wait(command, no_wait);
     of_suites.byte_count("--memory", memory, "address space a point may have, e.g. 4G");
@@ -121,8 +117,7 @@ struct SweepCommand : SweepOptions, OutputOptions {
   // Includes the options that choose points of the suite.
   json context_of_suite() const {
     json context = machine_context();
-    context["selection"] = {
-        {"solver", solver}, {"filter", filter}, {"exclude", exclude}, {"shard", shard_text}};
+    context["selection"] = {{"solver", solver}, {"filter", filter}, {"exclude", exclude}};
     // An untimed run must not be resumed as a timed one.
     if (untimed) context["selection"]["untimed"] = true;
     return context;
@@ -130,8 +125,7 @@ struct SweepCommand : SweepOptions, OutputOptions {
 
   int run_suite(const Words& typed) const {
     const Suite suite = load_suite(*this);
-    auto searches = plan(suite, filters_of(*this));
-    if (!shard_text.empty()) searches = shard(std::move(searches), parse_shard(shard_text));
+    const auto searches = plan(suite, filters_of(*this));
     if (dry_run) return print_plan(suite, searches);
     json context = context_of_suite();
     const auto run = [&](Journal& journal, const json& before) -> Finished {
@@ -168,9 +162,8 @@ struct SweepCommand : SweepOptions, OutputOptions {
 
   int run_hard_cases(const Words& typed) const {
     check_known("profile", profile, profiles());
-    StabilityPlan plan =
+    const StabilityPlan plan =
         plan_stability(profile, solver_pattern(solver), pattern_of("--case", hard_case));
-    if (!shard_text.empty()) plan.keep(parse_shard(shard_text));
     if (dry_run) {
       std::cout << plan.cells() << " cells: " << plan.cases.size() << " hard cases by "
                 << plan.solvers.size() << " solvers; " << plan.scenes.size()
@@ -182,8 +175,7 @@ struct SweepCommand : SweepOptions, OutputOptions {
     context["selection"] = {{"solver", solver},
                             {"case", hard_case},
                             {"values", hard_case_values(profile)},
-                            {"seed", seed},
-                            {"shard", shard_text}};
+                            {"seed", seed}};
     const auto run = [&](Journal& journal, const json&) -> Finished {
       Progress progress;
       const std::uint64_t first = seed < 0 ? 1 : static_cast<std::uint64_t>(seed);

@@ -56,24 +56,19 @@ double shortest(int rounds, Work work) {
 }
 
 // A square root and a division an edge, independent of each other, in single precision and in the
-// first-level cache: what no pass that corrects every edge can go below.
-struct SqrtDiv {
-  static constexpr int edges = 1024;
-  std::array<float, edges> lengths{};
-  SqrtDiv() { lengths.fill(1.2F); }
-  void operator()() {
-    for (float& q : lengths) q = 1.5F - 0.5F / std::sqrt(q);
-    benchmark::DoNotOptimize(lengths);
-  }
-};
-
-// s for one edge. Measured at the first call.
+// first-level cache: what no pass that corrects every edge can go below, s for one edge. Measured
+// at the first call.
 double sqrt_div_seconds() {
-  constexpr int passes = 20;
-  static const double all = shortest(1000, [pass = SqrtDiv()]() mutable {
-    for (int i = 0; i < passes; ++i) pass();
+  constexpr int passes = 20, edges = 1024;
+  static const double all = shortest(1000, [] {
+    std::array<float, edges> lengths{};
+    lengths.fill(1.2F);
+    for (int i = 0; i < passes; ++i) {
+      for (float& q : lengths) q = 1.5F - 0.5F / std::sqrt(q);
+      benchmark::DoNotOptimize(lengths);
+    }
   });
-  return all / (passes * SqrtDiv::edges);
+  return all / (passes * edges);
 }
 
 void read_all(const Eigen::VectorXd& data) {
@@ -96,21 +91,17 @@ double read_bandwidth(double bytes) {
   return rate = static_cast<double>(passes * size * sizeof(double)) / seconds;
 }
 
-// A product of dense matrices, which comes nearest to the peak; a fused multiply-add counts as two.
-struct Product {
-  static constexpr int size = 256;
-  static constexpr double flops = 2.0 * size * size * size;
-  Eigen::MatrixXd a = Eigen::MatrixXd::Ones(size, size), b = a, c = a;
-  void operator()() {
-    c.noalias() = a * b;
-    benchmark::DoNotOptimize(c.data());
-  }
-};
-
-// Floating-point operations a second. Measured at the first call.
+// Floating-point operations a second in a product of dense matrices, which comes nearest to the
+// peak; a fused multiply-add counts as two. Measured at the first call.
 double peak_flops() {
-  static const double rate = Product::flops / shortest(20, Product());
-  return rate;
+  constexpr int size = 256;
+  const Eigen::MatrixXd a = Eigen::MatrixXd::Ones(size, size);
+  Eigen::MatrixXd c = a;
+  static const double seconds = shortest(20, [&] {
+    c.noalias() = a * a;
+    benchmark::DoNotOptimize(c.data());
+  });
+  return 2.0 * size * size * size / seconds;
 }
 
 // ---- The scenes ----
@@ -349,30 +340,9 @@ void register_linear_systems(const std::string& scene, int n, const std::vector<
   }
 }
 
-void register_floors() {
-  add("floor/sqrt_div", [](benchmark::State& state) {
-    SqrtDiv pass;
-    while (state.KeepRunning()) pass();
-    per_item(state, SqrtDiv::edges);
-  });
-  add("floor/product", [](benchmark::State& state) {
-    Product product;
-    while (state.KeepRunning()) product();
-    state.counters["flops"] = rate(Product::flops);
-  });
-  for (const std::int64_t kib : {16, 512, 8192, 262144}) {
-    add("floor/stream_read/KiB:" + std::to_string(kib), [kib](benchmark::State& state) {
-      const Eigen::VectorXd data = Eigen::VectorXd::Ones(kib * 1024 / 8);
-      while (state.KeepRunning()) read_all(data);
-      state.SetBytesProcessed(state.iterations() * kib * 1024);
-    });
-  }
-}
-
 void register_all() {
   const std::vector<std::string> spd{"cholmod_simplicial", "cholmod_supernodal", "multifrontal",
                                      "multifrontal_mixed"};
-  register_floors();
   for (const int n : {80, 1000, 100000, 1000000}) {
     register_steps("chain", n);
     register_linear_systems("chain", n, {"tridiagonal"});

@@ -9,7 +9,6 @@
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/json.h"
-#include "harness/base/small_runs.h"
 #include "harness/base/statistics.h"
 #include "harness/base/text.h"
 #include "harness/points/contestant.h"
@@ -95,20 +94,6 @@ void add_stability(json& all, const json& more) {
   for (std::size_t i = 0; i < std::min(differences.size(), others.size()); ++i) {
     if (differences[i].at("seen").is_null()) differences[i]["seen"] = others[i].at("seen");
   }
-}
-
-// Whether documents that are shards are all there.
-bool all_shards(const std::vector<json>& documents) {
-  std::set<std::size_t> found;
-  std::size_t count = 0;
-  for (const json& document : documents) {
-    const std::string text = document.value(Pointer("/context/selection/shard"), std::string());
-    if (text.empty()) continue;
-    const Shard shard = parse_shard(text);
-    count = shard.count;
-    found.insert(shard.index);
-  }
-  return found.size() == count;
 }
 
 }  // namespace
@@ -217,9 +202,8 @@ std::optional<PairNoise> noise_of(const json& context) {
 
 json joined(const std::vector<json>& documents) {
   json all = documents.front();
-  all["complete"] = all_shards(documents) && std::ranges::all_of(documents, [](const json& d) {
-                      return d.value("complete", true);
-                    });
+  all["complete"] = std::ranges::all_of(
+      documents, [](const json& document) { return document.value("complete", true); });
   if (documents.size() == 1) return all;
   const bool sweep = all.contains("points");
   const char* rows = sweep ? "points" : "matrix";
@@ -244,7 +228,6 @@ json joined(const std::vector<json>& documents) {
     if (!sweep && &document != &documents.front()) add_stability(all, document);
   }
   if (std::isfinite(noise)) all[q95] = noise;
-  if (all.contains(Pointer("/context/selection"))) all["context"]["selection"]["shard"] = "";
   return all;
 }
 

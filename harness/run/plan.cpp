@@ -113,25 +113,6 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
   return searches;
 }
 
-std::vector<Search> shard(std::vector<Search> searches, const Shard& part) {
-  // Work grows with constraints times limits.
-  using Group = std::pair<std::string, SceneParameters>;
-  std::map<Group, double> load;
-  const auto group = [](const Search& s) { return Group(s.base.scene, s.base.scene_parameters); };
-  for (const Search& s : searches) load[group(s)] += s.base.constraints;
-  std::vector<std::pair<Group, double>> largest(load.begin(), load.end());
-  std::ranges::stable_sort(largest, std::greater(), [](const auto& entry) { return entry.second; });
-  std::vector<double> filled(part.count, 0);
-  std::map<Group, std::size_t> place;
-  for (const auto& [name, size] : largest) {
-    const auto least = std::ranges::min_element(filled);
-    *least += size;
-    place[name] = static_cast<std::size_t>(least - filled.begin()) + 1;
-  }
-  std::erase_if(searches, [&](const Search& s) { return place.at(group(s)) != part.index; });
-  return searches;
-}
-
 Estimate estimate(const Suite& suite, const std::vector<Search>& searches) {
   std::map<std::size_t, std::vector<const Search*>> families;
   for (const Search& search : searches) families[search.family].push_back(&search);

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "harness/base/pattern.h"
-#include "harness/base/small_runs.h"
 #include "harness/points/suite.h"
 #include "harness/run/execute.h"
 
@@ -35,10 +34,6 @@ struct Search {
 
 // Throws UsageError if no point is left.
 std::vector<Search> plan(const Suite& suite, const SweepFilters& filters);
-
-// One part of a plan, possibly empty. All searches of one scene and size are in the same part, so
-// that no comparison crosses machines; large sizes are distributed first.
-std::vector<Search> shard(std::vector<Search> searches, const Shard& part);
 
 struct Estimate {
   double seconds = 0;  // of the sweep

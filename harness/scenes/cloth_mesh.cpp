@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <set>
 
 #include "harness/base/errors.h"
@@ -37,27 +38,6 @@ double obliqueness(const std::vector<Eigen::Vector3d>& x, const std::array<int, 
     worst = std::max(worst, std::abs(angle - 0.5 * std::numbers::pi));
   }
   return worst * 180 / std::numbers::pi;
-}
-
-void check(const MeshFile& file, const std::string& path) {
-  std::map<Side, int> faces_at;
-  const auto name = [](Side s) {
-    return std::to_string(s.first + 1) + " and " + std::to_string(s.second + 1);
-  };
-  for (const std::vector<int>& face : file.faces) {
-    if (face.size() > 4)
-      throw UsageError("'" + path + "': a face of " + std::to_string(face.size()) +
-                       " corners at vertex " + std::to_string(face[0] + 1) +
-                       "; cloth is made of quads and triangles");
-    for (std::size_t k = 0; k < face.size(); ++k) {
-      const Side s = side_of(face, k);
-      if (!((file.vertices[s.first] - file.vertices[s.second]).norm() > 0))
-        throw UsageError("'" + path + "': the side between vertices " + name(s) + " has no length");
-      if (++faces_at[s] > 2)
-        throw UsageError("'" + path + "': the side between vertices " + name(s) +
-                         " belongs to more than two faces");
-    }
-  }
 }
 
 // Triangles i and j that share the side between their corners, as a quad around it.
@@ -217,8 +197,27 @@ std::vector<double> areas(const ClothMesh& mesh) {
 
 }  // namespace
 
-ClothMesh cloth_of(const MeshFile& file, const std::string& path) {
-  check(file, path);
+std::vector<int> pieces_of(const ClothMesh& mesh) {
+  std::vector<int> root(mesh.vertices.size());
+  std::iota(root.begin(), root.end(), 0);
+  const auto root_of = [&](int v) {
+    while (root[v] != v) v = root[v] = root[root[v]];
+    return v;
+  };
+  const auto join = [&](const auto& faces) {
+    for (const auto& face : faces)
+      for (const int v : face) root[root_of(v)] = root_of(face[0]);
+  };
+  join(mesh.quads);
+  join(mesh.triangles);
+  std::map<int, int> number;
+  std::vector<int> piece;
+  for (int v = 0; v < static_cast<int>(root.size()); ++v)
+    piece.push_back(number.try_emplace(root_of(v), static_cast<int>(number.size())).first->second);
+  return piece;
+}
+
+ClothMesh cloth_of(const MeshFile& file) {
   ClothMesh cloth;
   std::vector<int> place(file.vertices.size(), -1);
   const auto vertex = [&](int v) {
@@ -229,11 +228,13 @@ ClothMesh cloth_of(const MeshFile& file, const std::string& path) {
     return place[v];
   };
   std::vector<std::array<int, 3>> triangles;
-  for (const std::vector<int>& face : file.faces) {
-    if (face.size() == 4)
-      cloth.quads.push_back({vertex(face[0]), vertex(face[1]), vertex(face[2]), vertex(face[3])});
-    else
-      triangles.push_back({vertex(face[0]), vertex(face[1]), vertex(face[2])});
+  for (const auto& [c, line] : distinct_faces(file)) {
+    if (c.size() == 4) {
+      cloth.quads.push_back({vertex(c[0]), vertex(c[1]), vertex(c[2]), vertex(c[3])});
+      continue;
+    }
+    for (std::size_t k = 1; k + 1 < c.size(); ++k)
+      triangles.push_back({vertex(c[0]), vertex(c[k]), vertex(c[k + 1])});
   }
   std::vector<char> taken(triangles.size(), 0);
   for (const Pairing& pairing : pairings(cloth.vertices, triangles)) {

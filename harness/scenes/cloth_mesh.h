@@ -8,15 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "harness/scenes/mesh_file.h"
 #include "harness/scenes/meshes.h"
 
 namespace harness {
-
-// What a file holds of a mesh.
-struct MeshFile {
-  std::vector<Eigen::Vector3d> vertices;  // in the file's unit
-  std::vector<std::vector<int>> faces;    // corners in the order of the file
-};
 
 struct ClothMesh {
   std::vector<Eigen::Vector3d> vertices;
@@ -26,10 +21,12 @@ struct ClothMesh {
 };
 
 // Quads of a file's faces: triangles are joined to quads where two make one whose angles are within
-// `most_oblique` of right ones, the best first. Vertices that no face has are left out. Throws
-// UsageError, naming file and vertices (counted from 1), for faces of more corners, sides without
-// length, and sides of more than two faces.
-ClothMesh cloth_of(const MeshFile& file, const std::string& path);
+// `most_oblique` of right ones, the best first. Faces of more corners are fans of triangles.
+// Vertices that no face has are left out. Throws UsageError for what distinct_faces() refuses.
+ClothMesh cloth_of(const MeshFile& file);
+
+// The piece that each vertex is of, from 0 on: faces that share a vertex are of one piece.
+std::vector<int> pieces_of(const ClothMesh& mesh);
 
 // Each side cut into n.
 ClothMesh refined(const ClothMesh& mesh, int n);

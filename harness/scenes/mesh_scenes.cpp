@@ -4,7 +4,8 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
+#include <functional>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -53,47 +54,6 @@ std::vector<Comparison> read_pins(const std::string& text) {
   return all;
 }
 
-// "7", "7/1/3", "7//3", "-1": corners count from 1, or backwards from the last vertex so far.
-int corner_of(const std::string& word, std::size_t vertices, const std::string& where) {
-  char* rest = nullptr;
-  const long number = std::strtol(word.c_str(), &rest, 10);
-  if (rest == word.c_str() || (*rest != '\0' && *rest != '/'))
-    throw UsageError(where + ": '" + word + "' is not a corner of a face, such as 7 or 7/1/3");
-  const auto count = static_cast<long>(vertices);
-  const long index = number < 0 ? count + number : number - 1;
-  if (number == 0 || index < 0 || index >= count)
-    throw UsageError(where + ": no vertex " + std::to_string(number) + " among the " +
-                     std::to_string(count) + " so far");
-  return static_cast<int>(index);
-}
-
-// Wavefront OBJ: vertices and faces, and nothing else of what a file may hold. Throws UsageError,
-// naming file and line, for what is no OBJ file or has no face.
-MeshFile read_mesh_file(const std::string& path) {
-  std::istringstream lines(read_file(path, "mesh"));
-  MeshFile mesh;
-  int number = 0;
-  for (std::string line; std::getline(lines, line);) {
-    const std::string where = "'" + path + "', line " + std::to_string(++number);
-    std::istringstream words(line);
-    std::string word;
-    words >> word;
-    if (word == "v") {
-      Eigen::Vector3d v;
-      words >> v.x() >> v.y() >> v.z();
-      if (!words || !v.allFinite()) throw UsageError(where + ": a vertex needs three numbers");
-      mesh.vertices.push_back(v);
-    } else if (word == "f") {
-      std::vector<int>& face = mesh.faces.emplace_back();
-      while (words >> word) face.push_back(corner_of(word, mesh.vertices.size(), where));
-      if (face.size() < 3) throw UsageError(where + ": a face needs three corners or more");
-    }
-  }
-  if (mesh.faces.empty())
-    throw UsageError("'" + path + "' has no faces: is it a mesh in Wavefront's OBJ format?");
-  return mesh;
-}
-
 // The files, read once for the scenes of all parameters.
 struct MeshModel {
   std::string identity;
@@ -110,9 +70,9 @@ struct MeshModel {
 inextensible::TriangleMesh body_of(const MeshFile& file) {
   inextensible::TriangleMesh body;
   body.vertices = file.vertices;
-  for (const std::vector<int>& face : file.faces) {
-    for (std::size_t k = 1; k + 1 < face.size(); ++k)
-      body.triangles.push_back({face[0], face[k], face[k + 1]});
+  for (const auto& [corners, line] : distinct_faces(file)) {
+    for (std::size_t k = 1; k + 1 < corners.size(); ++k)
+      body.triangles.push_back({corners[0], corners[k], corners[k + 1]});
   }
   double volume = 0;  // negative: faces are the wrong way round
   for (const auto& [a, b, c] : body.triangles)
@@ -121,6 +81,33 @@ inextensible::TriangleMesh body_of(const MeshFile& file) {
     for (auto& [a, b, c] : body.triangles) std::swap(b, c);
   }
   return body;
+}
+
+ClothMesh with_pins(const MeshModel& model, ClothMesh cloth) {
+  for (const Eigen::Vector3d& v : cloth.vertices) cloth.held.push_back(model.pinned(v));
+  return cloth;
+}
+
+// Throws UsageError for cloth that falls apart or cannot move.
+void check_cloth(const std::string& file, const ClothMesh& cloth, bool has_body) {
+  if (std::ranges::all_of(cloth.held, std::identity{}))
+    throw UsageError("'" + file + "': all vertices are pinned, nothing can move");
+  const std::vector<int> piece = pieces_of(cloth);
+  std::set<int> pieces, held;
+  for (std::size_t v = 0; v < piece.size(); ++v) {
+    pieces.insert(piece[v]);
+    if (cloth.held[v]) held.insert(piece[v]);
+  }
+  if (!has_body && held.size() < pieces.size())
+    throw UsageError("'" + file + "' is in " + std::to_string(pieces.size()) + " pieces, " +
+                     std::to_string(pieces.size() - held.size()) +
+                     " of them pinned nowhere: join corners that lie on each other, or pin every "
+                     "piece");
+  if (count_cloth(cloth).second == 0)
+    throw UsageError("'" + file + "': no side of its " +
+                     std::to_string(cloth.quads.size() + cloth.triangles.size()) +
+                     " faces is constrained, as triangles that make no quads are springs: there is "
+                     "nothing to compare");
 }
 
 std::shared_ptr<const MeshModel> read_model(const std::string& name) {
@@ -143,7 +130,7 @@ std::shared_ptr<const MeshModel> read_model(const std::string& name) {
   content = read_file(file, "mesh") + content;
   if (!body.empty()) content += read_file(body, "mesh");
   model->identity = fnv1a(content);
-  model->cloth = cloth_of(read_mesh_file(file), file);
+  model->cloth = cloth_of(read_mesh_file(file));
   if (!body.empty()) {
     model->body = body_of(read_mesh_file(body));
     try {
@@ -152,13 +139,15 @@ std::shared_ptr<const MeshModel> read_model(const std::string& name) {
       throw UsageError("'" + body + "' is not a body to collide with: " + error.what());
     }
   }
-  const bool holds =
-      std::ranges::any_of(model->cloth.vertices, [&](auto& v) { return model->pinned(v); });
+  const ClothMesh cloth = with_pins(*model, model->cloth);
+  const bool holds = std::ranges::any_of(cloth.held, std::identity{});
   if (!model->pins.empty() && !holds)
     throw UsageError("scene '" + name + "': no vertex is where the pins are");
   if (!holds && body.empty())
-    throw UsageError("scene '" + name +
-                     "': nothing is pinned and nothing is below; add ,pins=y>... or ,body=FILE");
+    throw UsageError(
+        "scene '" + name +
+        "': nothing is pinned and nothing is below; add --pins 'y > ...' or --collider FILE");
+  check_cloth(file, cloth, !body.empty());
   return model;
 }
 
@@ -170,11 +159,8 @@ Eigen::Vector3d placed(const Eigen::Vector3d& x, const SceneParameters& p) {
 }
 
 ClothMesh cloth_for(const MeshModel& model, const SceneParameters& p) {
-  ClothMesh cloth = refined(model.cloth, whole(p));
-  for (Eigen::Vector3d& v : cloth.vertices) {
-    cloth.held.push_back(model.pinned(v));
-    v = placed(v, p);
-  }
+  ClothMesh cloth = with_pins(model, refined(model.cloth, whole(p)));
+  for (Eigen::Vector3d& v : cloth.vertices) v = placed(v, p);
   return cloth;
 }
 

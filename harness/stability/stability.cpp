@@ -72,13 +72,6 @@ StabilityPlan plan_stability(const std::string& profile, const std::optional<Pat
   return plan;
 }
 
-void StabilityPlan::keep(const Shard& part) {
-  part.keep(cases);
-  part.keep(scenes);
-  part.keep(frames);
-  freedom = freedom && part.index == 1;
-}
-
 StabilityOutcome run_stability(const StabilityPlan& plan, std::uint64_t seed,
                                const RunEvents& events) {
   StabilityOutcome outcome;

@@ -108,8 +108,6 @@ struct StabilityPlan {
   bool freedom = false;
 
   std::size_t cells() const { return cases.size() * solvers.size(); }
-  // One part of it: a stretch of each list, and the first part has the degrees of freedom.
-  void keep(const Shard& part);
 };
 // All of hard_cases(profile) and beside them. solver: must match the solver's whole name;
 // hard_case: must be found in a row's or a case's name. Throws UsageError if nothing matches.

@@ -24,16 +24,14 @@ constexpr double newest = 0.1;
 Contacts::Contacts(const Problem& problem)
     : problem_(problem),
       friction_(problem.collider()->friction()),
-      vertex_(problem.vertices()),
       place_(problem.vertices(), -1),
-      obstacle_(problem),
-      stopped_(problem.vertices(), 0) {
+      obstacle_(problem) {
   const double length = problem.constraints() > 0 ? problem.shortest_rest_length() : 0;
   tolerance_ = length > 0 ? invisible * length : invisible_point;
   margin_ = margin * length;
   slack_ = length > 0 ? room * length * std::sqrt(problem.total_mass())
                       : std::numeric_limits<double>::infinity();
-  for (std::vector<double>& column : numbers_) column.assign(problem.vertices() + lanes, 0.0);
+  contacts_.reserve(problem.vertices());
   found_.reserve(problem.vertices());
   if (!problem.contact_inside() || friction_ == 0) return;
   candidate_.resize(3, problem.vertices());
@@ -43,8 +41,8 @@ Contacts::Contacts(const Problem& problem)
 
 void Contacts::begin(const Positions& x_start, double time, double h) {
   const Timing measured = timing();
-  for (int c = 0; c < count_; ++c) place_[vertex_[c]] = -1;
-  count_ = 0;
+  for (const Contact& contact : contacts_) place_[contact.vertex] = -1;
+  contacts_.clear();
   clear_ = false;
   start_ = &x_start;
   h_ = h;
@@ -68,16 +66,12 @@ double Contacts::distance(const Positions& x) const {
 void Contacts::put(const ContactPlane& plane, WorkCounters& work) {
   int& place = place_[plane.vertex];
   if (place < 0) {
-    place = count_++;
-    vertex_[place] = plane.vertex;
-    value(pushed, place) = 0;
-    stopped_[place] = 0;
+    place = count();
+    contacts_.push_back({.vertex = plane.vertex});
     ++work.contacts;
   }
-  value(normal_x, place) = plane.normal.x();
-  value(normal_y, place) = plane.normal.y();
-  value(normal_z, place) = plane.normal.z();
-  value(offset, place) = plane.offset;
+  contacts_[place].normal = plane.normal;
+  contacts_[place].offset = plane.offset;
 }
 
 int Contacts::find(const Positions& x, WorkCounters& work) {
@@ -91,8 +85,8 @@ int Contacts::update(Positions& x, WorkCounters& work) {
   const Timing measured = timing();
   int changed = 0;
   ContactPlane plane{};
-  for (int c = 0; c < count_; ++c) {
-    plane.vertex = vertex_[c];
+  for (int c = 0; c < count(); ++c) {
+    plane.vertex = vertex(c);
     auto at = x.col(plane.vertex);
     if (!holds(c)) continue;
     if (!obstacle_.plane_at(at, plane, work)) {
@@ -102,7 +96,7 @@ int Contacts::update(Positions& x, WorkCounters& work) {
       continue;
     }
     at -= push(c) * normal(c);
-    value(pushed, c) = 0;
+    set_push(c, 0);
     put(plane, work);
     ++changed;
   }
@@ -113,26 +107,9 @@ int Contacts::update(Positions& x, WorkCounters& work) {
 
 void Contacts::settle(Positions& x) {
   const Timing measured = timing();
-  double at[3][lanes] = {};
-  for (int first = 0; first < count_; first += lanes) {
-    const int here = std::min(lanes, count_ - first);
-    const int* vertex = vertex_.data() + first;
-    for (int i = 0; i < here; ++i) {
-      for (int axis = 0; axis < 3; ++axis) at[axis][i] = x(axis, vertex[i]);
-    }
-    const double* n[3] = {&value(normal_x, first), &value(normal_y, first),
-                          &value(normal_z, first)};
-    const double* offsets = &value(offset, first);
-    double* pushes = &value(pushed, first);
-#pragma GCC ivdep
-    for (int i = 0; i < lanes; ++i) {
-      const double height = n[0][i] * at[0][i] + n[1][i] * at[1][i] + n[2][i] * at[2][i];
-      const double more = visit(height - offsets[i], pushes[i]);
-      for (int axis = 0; axis < 3; ++axis) at[axis][i] += more * n[axis][i];
-    }
-    for (int i = 0; i < here; ++i) {
-      for (int axis = 0; axis < 3; ++axis) x(axis, vertex[i]) = at[axis][i];
-    }
+  for (int c = 0; c < count(); ++c) {
+    auto at = x.col(vertex(c));
+    at += visit(gap(c, at), contacts_[c].push) * normal(c);
   }
 }
 
@@ -161,7 +138,7 @@ void Contacts::apply_friction(Positions& x0, WorkCounters& work) {
     put(plane, work);
     const int v = plane.vertex;
     const double push = plane.offset - plane.normal.dot(expected_.col(v));
-    stopped_[place_[v]] =
+    contacts_[place_[v]].stopped =
         take_friction(plane, push, x0.col(v) + scale * pulling_.col(v) - carried(v), x0);
   }
   candidate_ = x0;
@@ -171,7 +148,7 @@ void Contacts::accept(const Positions& x) {
   if (candidate_.size() == 0) return;
   const Timing measured = timing();
   const double scale = 1 / (h_ * h_), edge = margin_ / margin;
-  for (int c = 0; c < count_; ++c) candidate_.col(vertex_[c]) += push(c) * normal(c);
+  for (int c = 0; c < count(); ++c) candidate_.col(vertex(c)) += push(c) * normal(c);
   const double *at = x.data(), *from = start_->data(), *without = candidate_.data();
   double *before = before_.data(), *pressing = pressing_.data(), *pulling = pulling_.data();
 #pragma GCC ivdep
@@ -199,8 +176,8 @@ void Contacts::accept(const Positions& x) {
 
 void Contacts::keep_in_planes(Positions& d) const {
   const Timing measured = timing();
-  for (int c = 0; c < count_; ++c) {
-    auto at = d.col(vertex_[c]);
+  for (int c = 0; c < count(); ++c) {
+    auto at = d.col(vertex(c));
     if (holds(c)) at -= normal(c).dot(at) * normal(c);
   }
 }
@@ -209,10 +186,10 @@ void Contacts::keep_on_planes(const Positions& x, Positions& v) const {
   keep_in_planes(v);
   if (!problem_.body_motion()) return;
   const Pose back = carry_.inverse();
-  for (int c = 0; c < count_; ++c) {
+  for (int c = 0; c < count(); ++c) {
     if (!holds(c)) continue;
-    const Eigen::Vector3d at = x.col(vertex_[c]), obstacle = (at - back(at)) / h_;
-    v.col(vertex_[c]) += normal(c).dot(obstacle) * normal(c);
+    const Eigen::Vector3d at = x.col(vertex(c)), obstacle = (at - back(at)) / h_;
+    v.col(vertex(c)) += normal(c).dot(obstacle) * normal(c);
   }
 }
 
@@ -230,7 +207,7 @@ void Contacts::push_out(Positions& x, WorkCounters& work) {
     const double depth = plane.offset - plane.normal.dot(at);
     at += depth * plane.normal;
     put(plane, work);
-    value(pushed, place_[plane.vertex]) += depth;
+    contacts_[place_[plane.vertex]].push += depth;
     if (!problem_.contact_inside()) take_friction(plane, depth, at - carried(plane.vertex), x);
   }
   if (problem_.contact_inside() || friction_ == 0) return;
@@ -243,17 +220,14 @@ void Contacts::push_out(Positions& x, WorkCounters& work) {
 }
 
 void Contacts::save(Record& record) const {
-  for (std::size_t i = 0; i < numbers; ++i) {
-    record[i].reserve(numbers_[i].size());
-    record[i].assign(numbers_[i].begin(), numbers_[i].begin() + count_);
-  }
+  record.reserve(contacts_.capacity());
+  record = contacts_;
 }
 
 void Contacts::restore(const Record& record) {
-  const int known = static_cast<int>(record[0].size());
-  while (count_ > known) place_[vertex_[--count_]] = -1;
-  for (std::size_t i = 0; i < numbers; ++i)
-    std::copy(record[i].begin(), record[i].end(), numbers_[i].begin());
+  for (; contacts_.size() > record.size(); contacts_.pop_back())
+    place_[contacts_.back().vertex] = -1;
+  std::ranges::copy(record, contacts_.begin());
 }
 
 }  // namespace inextensible

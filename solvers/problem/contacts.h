@@ -19,7 +19,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -125,32 +124,31 @@ class Contacts {
   // sum: s, outlives this; null: no clock is read, as at first.
   void measure(double* sum) { seconds_ = sum; }
 
-  int count() const { return count_; }
-  int vertex(int contact) const { return vertex_[contact]; }
-  Eigen::Vector3d normal(int contact) const {
-    return {value(normal_x, contact), value(normal_y, contact), value(normal_z, contact)};
-  }
+  struct Contact {
+    int vertex;
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+    double offset = 0, push = 0;  // m, along the normal
+    bool stopped = false;         // friction took all of its slide
+  };
+  int count() const { return static_cast<int>(contacts_.size()); }
+  int vertex(int contact) const { return contacts_[contact].vertex; }
+  const Eigen::Vector3d& normal(int contact) const { return contacts_[contact].normal; }
   bool holds(int contact) const { return push(contact) > 0; }
-  bool stopped(int contact) const { return stopped_[contact]; }  // friction took all of its slide
-  double push(int contact) const { return value(pushed, contact); }  // m, along the normal
-  void set_push(int contact, double push) { value(pushed, contact) = push; }
+  bool stopped(int contact) const { return contacts_[contact].stopped; }
+  double push(int contact) const { return contacts_[contact].push; }
+  void set_push(int contact, double push) { contacts_[contact].push = push; }
   // Height of its vertex at x above the plane, m.
   double gap(int contact, const Eigen::Vector3d& x) const {
-    return normal(contact).dot(x) - value(offset, contact);
+    return normal(contact).dot(x) - contacts_[contact].offset;
   }
 
-  // Numbers of a contact, m; each has a column of its own.
-  enum Number { normal_x, normal_y, normal_z, offset, pushed, numbers };
   // A snapshot of planes and pushes, for rollback with the positions of that time. Contacts that
   // were found since are forgotten.
-  using Record = std::array<std::vector<double>, numbers>;
+  using Record = std::vector<Contact>;
   void save(Record& record) const;
   void restore(const Record& record);
 
  private:
-  static constexpr int lanes = 8;  // contacts that settle() visits side by side
-  double& value(Number number, int contact) { return numbers_[number][contact]; }
-  double value(Number number, int contact) const { return numbers_[number][contact]; }
   void put(const ContactPlane& plane, WorkCounters& work);
   Eigen::Vector3d carried(int vertex) const;
   bool take_friction(const ContactPlane& plane, double push, const Eigen::Vector3d& displacement,
@@ -164,13 +162,10 @@ class Contacts {
   Pose carry_;
   double h_ = 0;
   bool clear_ = false;
-  int count_ = 0;
-  std::vector<int> vertex_;
-  std::array<std::vector<double>, numbers> numbers_;  // filled up to whole lanes
-  std::vector<int> place_;                            // of a vertex's contact, or -1
+  std::vector<Contact> contacts_;
+  std::vector<int> place_;  // of a vertex's contact, or -1
   Obstacle obstacle_;
   std::vector<ContactPlane> found_;
-  std::vector<char> stopped_;  // by contact
   // With friction only: the candidate after it, where edges are expected to take it, and what they
   // have done to vertices, m/s^2: in the last step; along surfaces; towards them.
   Positions candidate_, expected_, before_, pulling_, pressing_;

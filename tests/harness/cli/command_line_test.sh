@@ -23,8 +23,6 @@ no point is left <- SWEEP --filter nothing
 no case matches <- --sweep stability --case nothing --out out.json
 no profile of hard cases <- --sweep stability --profile large --out out.json
 --filter goes with --sweep strain, resolution and step only (--case chooses <- --sweep stability --filter x --out out.json
-must be i/N <- SWEEP --shard 2
-i must be from 1 to N <- SWEEP --shard 3/2
 is '1', must be a number above 0 and below 1 <- SWEEP --limit 0.01,1
 --memory <- SWEEP --memory much
 is 'nan', must be a number above 0 <- SWEEP --timeout nan
@@ -167,14 +165,13 @@ assert len(before) > 10 and {**before, ("chain", "icd"): found} == after, before
 makes known.json answers --answer net_place --solver '^fast_projection$' --no-plots
 bench show known.json | grep -q '^net_place' || fail "show of known answers names nothing"
 
-# ---- Hard cases: a partial result is completed without its journal, and shards are the whole (kill -9: loses_nothing_test.sh) ----
-cases=(--sweep stability --case 'Q[1-4]' --solver 'icd|^fast_projection$|shake' --no-plots)
-makes whole.json "${cases[@]}"
+# ---- Hard cases: a partial result is completed without its journal, and pieces are the whole (kill -9: loses_nothing_test.sh) ----
+cases=(--sweep stability --solver 'icd|^fast_projection$|shake' --no-plots --case)
+makes whole.json "${cases[@]}" 'Q[1-4]'
 holds 'd = read("whole.json"); d["complete"] = False; d["matrix"] = d["matrix"][:3]; json.dump(d, open("part.json", "w"))'
-makes part.json "${cases[@]}" --resume
-for i in 1 2 3; do makes "shard$i.json" "${cases[@]}" --shard "$i/3"; done
-bench show shard1.json shard3.json | grep -q "a shard is missing" || fail "a missing shard of hard cases"
-for files in part.json "shard1.json shard2.json shard3.json"; do
+makes part.json "${cases[@]}" 'Q[1-4]' --resume
+for half in 12 34; do makes "half$half.json" "${cases[@]}" "Q[$half]"; done
+for files in part.json "half12.json half34.json"; do
   diff <(bench show whole.json | tail -n +2) <(bench show $files | tail -n +2) || fail "$files: not the whole"
 done
 

@@ -1,4 +1,4 @@
-// Journals and shards: however a sweep is divided, its parts make up the whole.
+// Journals and pieces: however a sweep is divided, its parts make up the whole.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -131,48 +131,34 @@ TEST_F(JournalTest, RemembersAllButFailuresAndAsMuchOfAResultFile) {
   EXPECT_EQ(runs, 0);
 }
 
-// ---- Shards ----
+// ---- Pieces ----
 
-class ShardTest : public ::testing::TestWithParam<const char*> {};
-
-TEST_P(ShardTest, JoinedAreTheWhole) {
-  const Suite suite = suite_of(GetParam());
+TEST(Pieces, JoinedAreTheWhole) {
+  const Suite suite = suite_of("resolution");
   const auto searches = plan(suite, {});
   FakeMachine machine = hashing_machine();
-  const auto result = [&](const std::vector<Search>& some, const std::string& name) {
-    return result_document({{"selection", {{"shard", name}}}}, suite, {"bench"}, true,
+  const auto result = [&](const std::vector<Search>& some, bool complete = true) {
+    return result_document({}, suite, {"bench"}, complete,
                            run_sweep(suite, some, {}, machine.runner()).points);
   };
-  const json whole = result(searches, "");
   const auto sorted = [](const json& document) {
     std::vector<std::string> lines;
     for (const json& point : document.at("points")) lines.push_back(point.dump());
     std::ranges::sort(lines);
     return lines;
   };
+  const json whole = result(searches);
   EXPECT_TRUE(sorted(joined({whole, whole})) == sorted(whole))
       << "what is listed twice counts once";
-  for (std::size_t count = 1; count <= 8; ++count) {
-    std::vector<json> parts;
-    std::map<std::string, std::size_t> owner;  // of a scene and size
-    for (std::size_t i = 1; i <= count; ++i) {
-      const auto some = shard(searches, {i, count});
-      for (const Search& s : some) {
-        const std::string size = s.base.scene + std::to_string(s.base.resolution);
-        EXPECT_EQ(owner.emplace(size, i).first->second, i) << size << " is in two shards";
-      }
-      parts.push_back(result(some, std::to_string(i) + "/" + std::to_string(count)));
-    }
-    const json table = joined(parts);
-    EXPECT_EQ(table.at("complete"), true);
-    EXPECT_TRUE(sorted(table) == sorted(whole)) << count << " shards";
-    parts.erase(parts.begin());
-    if (count == 1) continue;
-    EXPECT_EQ(joined(parts).at("complete"), false) << "a shard is missing";
-  }
+  std::map<int, std::vector<Search>> of_size;
+  for (const Search& s : searches) of_size[s.base.resolution].push_back(s);
+  std::vector<json> pieces;
+  for (const auto& [size, some] : of_size) pieces.push_back(result(some));
+  EXPECT_EQ(joined(pieces).at("complete"), true);
+  EXPECT_TRUE(sorted(joined(pieces)) == sorted(whole));
+  pieces.push_back(result(of_size.begin()->second, false));
+  EXPECT_EQ(joined(pieces).at("complete"), false) << "a piece was interrupted";
 }
-
-INSTANTIATE_TEST_SUITE_P(Sweeps, ShardTest, ::testing::Values("strain", "resolution"));
 
 }  // namespace
 }  // namespace harness

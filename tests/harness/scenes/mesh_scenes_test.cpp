@@ -8,6 +8,7 @@
 #include <functional>
 #include <numbers>
 #include <random>
+#include <regex>
 #include <set>
 
 #include "harness/judge/mechanics.h"
@@ -105,25 +106,25 @@ TEST(MeshScene, CutFinerIsTheFinerSquare) {
   EXPECT_EQ(coarse.problem->bending().size(), fine.problem->bending().size());
 }
 
-// Three flat triangles around a vertex: no two of them make a good quad, so that springs hold them,
-// and cut finer they stay of one piece.
+// Three flat triangles around a vertex, beside a quad: no two of them make a good quad, so that
+// springs hold them, and cut finer they stay of one piece.
 TEST(MeshScene, TrianglesThatMakeNoQuadsHoldWithSprings) {
   std::ostringstream text;
   text << "v 0 0 0\n";
   for (int k = 0; k < 3; ++k)
     text << "v " << std::cos(2 * k * std::numbers::pi / 3) << " 0 "
          << std::sin(2 * k * std::numbers::pi / 3) << '\n';
-  text << "f 1 2 3\nf 1 3 4\nf 1 4 2\n";
-  const std::string name = "mesh:" + file_with("three.obj", text.str()) + ",pins=x>0.9999";
+  text << "v 2 0 0\nv 2 0 1\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 5 6 3\n";
+  const std::string name = "mesh:" + file_with("three.obj", text.str()) + ",pins=x>1.9andz<0.1";
   for (const int n : {1, 2, 5}) {
     const Scene mesh = built_scene(name, {{"n", n}});
     const int vertices = 1 + 3 * n * (n + 1) / 2, triangles = 3 * n * n;
-    EXPECT_EQ(mesh.problem->vertices(), vertices);
-    EXPECT_EQ(mesh.triangles.size(), triangles);
-    EXPECT_NEAR(mesh.problem->total_mass(), 0.15 * 0.75 * std::sqrt(3.0), 1e-5);
-    EXPECT_EQ(mesh.problem->constraints(), 0);
+    EXPECT_EQ(mesh.problem->vertices(), vertices + n * (n + 1));
+    EXPECT_EQ(mesh.triangles.size(), triangles + 2 * n * n);
+    EXPECT_EQ(mesh.problem->constraints(), 2 * n * (n + 1));
     ASSERT_TRUE(mesh.problem->shear());
-    EXPECT_EQ(mesh.problem->shear()->edges.size(), vertices + triangles - 1);  // Euler
+    const int sides = vertices + triangles - 1;  // Euler; n of them are the quad's
+    EXPECT_EQ(mesh.problem->shear()->edges.size(), sides - n + 2 * n * n);
   }
 }
 
@@ -144,6 +145,27 @@ TEST(MeshScene, FallsOntoItsBodyAndKeepsItsLimit) {
   EXPECT_LE(strain_range(*mesh.problem, state.x).most, 0.01 + 1e-9);
 }
 
+TEST(MeshScene, IsWhatItsExporterMeans) {
+  const std::string plain = square(3);
+  std::string double_sided = plain, continued = plain;
+  double_sided += "f 5 4 1 2\n";  // the first face from behind
+  continued.insert(continued.find(" 2//1"), " \\\r\n");
+  const Scene expected = built_scene("mesh:" + file_with("plain.obj", plain) + ",pins=y>-0.01");
+  for (const std::string& text :
+       {"\xEF\xBB\xBF" + plain, plain + "l 1 5\nvt 0 1\nusemtl cotton # blue\n",
+        plain.substr(0, plain.size() - 1) + " # the last face\n", double_sided, continued,
+        "v 9 9 9\n" + std::regex_replace(plain, std::regex("(\\d+)//1"), "-$1"),
+        std::regex_replace(plain, std::regex("f 1//1 2//1 5//1 4//1"), "f 1 2 5\nf 1 5 4")}) {
+    const Scene mesh = built_scene("mesh:" + file_with("exported.obj", text) + ",pins=y>-0.01");
+    EXPECT_EQ(joined_places(mesh, mesh.problem->edges()),
+              joined_places(expected, expected.problem->edges()))
+        << text;
+  }
+  const std::string six = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 0 1 0\nf 2 3 4 5 6 1\n";
+  EXPECT_EQ(
+      built_scene("mesh:" + file_with("six.obj", six) + ",pins=x<0.5andy<0.5").triangles.size(), 4);
+}
+
 TEST(MeshScene, WhatCanBeNoClothIsRefusedInALine) {
   const std::string good = file_with("good.obj", square(3));
   const std::string two = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
@@ -160,10 +182,20 @@ TEST(MeshScene, WhatCanBeNoClothIsRefusedInALine) {
       {"mesh:" + file_with("empty.obj", "# nothing\n") + ",pins=y>0", "no faces"},
       {"mesh:" + file_with("short.obj", "v 1 2\n") + ",pins=y>0", "line 1: a vertex needs three"},
       {"mesh:" + file_with("beyond.obj", two + "f 1 2 9\n") + ",pins=y>0", "line 5: no vertex 9"},
-      {"mesh:" + file_with("five.obj", two + "v 2 2 2\nf 1 2 3 4 5\n") + ",pins=y>0",
-       "a face of 5 corners"},
-      {"mesh:" + file_with("flat.obj", two + "v 0 0 0\nf 1 5 3\n") + ",pins=y>0",
-       "between vertices 1 and 5 has no length"},
+      {"mesh:" + good + ",pins=y<9", "all vertices are pinned"},
+      {"mesh:" + file_with("word.obj", two + "vx 1\nf 1 2 3 4\n") + ",pins=y>0",
+       "line 5: 'vx' is no keyword"},
+      {"mesh:" + file_with("flat.obj", two + "v 0 0 0\n\nf 1 2 3 4\nf 1 5 3\n") + ",pins=y>0",
+       "face 2 (line 8): its corners 1 and 5 are in one place"},
+      {"mesh:" + file_with("line.obj", two + "v 0 2 0\nf 1 2 3 4\nf 1 4 5\n") + ",pins=y>0",
+       "face 2 (line 7): it has no area"},
+      {"mesh:" + file_with("bowtie.obj", two + "f 1 2 4 3\n") + ",pins=y>0", "it crosses itself"},
+      {"mesh:" +
+           file_with("apart.obj",
+                     two + "v 5 0 0\nv 6 0 0\nv 6 1 0\nv 5 1 0\nf 1 2 3 4\nf 5 6 7 8\n") +
+           ",pins=x<0.5",
+       "in 2 pieces, 1 of them pinned nowhere"},
+      {"mesh:" + file_with("one.obj", two + "f 1 2 3\n") + ",pins=x<0.5", "is constrained"},
       {"mesh:" + file_with("fan.obj", two + "v 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 2 5\n") + ",pins=y>0",
        "between vertices 1 and 2 belongs to more than two faces"},
   };

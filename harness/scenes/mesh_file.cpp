@@ -1,0 +1,134 @@
+#include "harness/scenes/mesh_file.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <sstream>
+
+#include "harness/base/errors.h"
+#include "harness/base/files.h"
+#include "harness/base/text.h"
+
+namespace harness {
+namespace {
+
+// Those of the format that say nothing about vertices and faces.
+const std::set<std::string> left_out{
+    "vt",     "vn",     "vp",     "l",          "g",        "o",        "s",   "mg",
+    "usemtl", "mtllib", "usemap", "maplib",     "lod",      "bevel",    "p",   "deg",
+    "bmat",   "step",   "cstype", "curv",       "curv2",    "surf",     "con", "parm",
+    "trim",   "hole",   "scrv",   "sp",         "c_interp", "d_interp", "end", "ctech",
+    "stech",  "call",   "csh",    "shadow_obj", "trace_obj"};
+
+// "7", "7/1/3", "7//3", "-1": corners count from 1, or backwards from the last vertex so far.
+int corner_of(const std::string& word, std::size_t vertices, const std::string& where) {
+  char* rest = nullptr;
+  const long number = std::strtol(word.c_str(), &rest, 10);
+  if (rest == word.c_str() || (*rest != '\0' && *rest != '/'))
+    throw UsageError(where + ": '" + shortened(word) +
+                     "' is not a corner of a face, such as 7 or 7/1/3");
+  const auto count = static_cast<long>(vertices);
+  const long index = number < 0 ? count + number : number - 1;
+  if (number == 0 || index < 0 || index >= count)
+    throw UsageError(where + ": no vertex " + std::to_string(number) + " among the " +
+                     std::to_string(count) + " so far");
+  return static_cast<int>(index);
+}
+
+// The next line without its comment, and with those that it is continued by.
+bool next_line(std::istream& file, std::string& line, int& number) {
+  line.clear();
+  for (std::string part; std::getline(file, part);) {
+    ++number;
+    while (!part.empty() && (part.back() == '\r' || part.back() == ' ')) part.pop_back();
+    const bool goes_on = part.ends_with('\\');
+    if (goes_on) part.back() = ' ';
+    line += part;
+    if (goes_on && file.peek() != std::istream::traits_type::eof()) continue;
+    line.erase(std::min(line.find('#'), line.size()));
+    return true;
+  }
+  return false;
+}
+
+void read_line(std::istringstream words, const std::string& where, int line, MeshFile& mesh) {
+  std::string word;
+  words >> word;
+  if (word == "v") {
+    Eigen::Vector3d v;
+    words >> v.x() >> v.y() >> v.z();
+    if (!words || !v.allFinite()) throw UsageError(where + ": a vertex needs three numbers");
+    mesh.vertices.push_back(v);
+  } else if (word == "f") {
+    MeshFile::Face& face = mesh.faces.emplace_back(MeshFile::Face{{}, line});
+    while (words >> word) face.corners.push_back(corner_of(word, mesh.vertices.size(), where));
+    if (face.corners.size() < 3) throw UsageError(where + ": a face needs three corners or more");
+  } else if (!word.empty() && !left_out.contains(word)) {
+    throw UsageError(where + ": '" + shortened(word) + "' is no keyword of an OBJ file");
+  }
+}
+
+}  // namespace
+
+std::string MeshFile::name(const Face& face) const {
+  const auto same = [&](const Face& other) { return other.line == face.line; };
+  return "'" + path + "', face " +
+         std::to_string(std::ranges::find_if(faces, same) - faces.begin() + 1) + " (line " +
+         std::to_string(face.line) + ")";
+}
+
+MeshFile read_mesh_file(const std::string& path) {
+  std::string content = read_file(path, "mesh");
+  if (content.starts_with("\xEF\xBB\xBF")) content.erase(0, 3);
+  std::istringstream file(content);
+  MeshFile mesh{path, {}, {}};
+  int number = 0;
+  for (std::string line; next_line(file, line, number);)
+    read_line(std::istringstream(line), "'" + path + "', line " + std::to_string(number), number,
+              mesh);
+  if (mesh.faces.empty())
+    throw UsageError("'" + path + "' has no faces: is it a mesh in Wavefront's OBJ format?");
+  return mesh;
+}
+
+std::vector<MeshFile::Face> distinct_faces(const MeshFile& file) {
+  std::vector<MeshFile::Face> faces;
+  std::set<std::set<int>> known;
+  std::map<std::pair<int, int>, int> faces_at;
+  const auto number = [](int vertex) { return std::to_string(vertex + 1); };
+  for (const MeshFile::Face& face : file.faces) {
+    const std::size_t n = face.corners.size();
+    const auto at = [&](std::size_t k) { return file.vertices[face.corners[k % n]]; };
+    Eigen::Vector3d area = Eigen::Vector3d::Zero();  // twice, after Newell
+    double longest = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+      const double side = (at(k + 1) - at(k)).norm();
+      if (!(side > 0))
+        throw UsageError(file.name(face) + ": its corners " + number(face.corners[k]) + " and " +
+                         number(face.corners[(k + 1) % n]) + " are in one place");
+      area += (at(k) - at(0)).cross(at(k + 1) - at(0));
+      longest = std::max(longest, side);
+    }
+    int turned = 0;  // corners that turn against the first one
+    const auto turn = [&](std::size_t k) {
+      return (at(k + 1) - at(k)).cross(at(k + n - 1) - at(k)).eval();
+    };
+    for (std::size_t k = 1; k < n; ++k) turned += turn(k).dot(turn(0)) < 0 ? 1 : 0;
+    if (n == 4 && turned == 2)
+      throw UsageError(file.name(face) + ": it crosses itself, its corners are not in turn");
+    if (!(area.norm() > 1e-9 * longest * longest))
+      throw UsageError(file.name(face) + ": it has no area, its corners lie on one line");
+    if (!known.emplace(face.corners.begin(), face.corners.end()).second) continue;
+    for (std::size_t k = 0; k < n; ++k) {
+      const int a = face.corners[k], b = face.corners[(k + 1) % n];
+      if (++faces_at[std::minmax(a, b)] > 2)
+        throw UsageError(file.name(face) + ": the side between vertices " + number(std::min(a, b)) +
+                         " and " + number(std::max(a, b)) + " belongs to more than two faces");
+    }
+    faces.push_back(face);
+  }
+  return faces;
+}
+
+}  // namespace harness
