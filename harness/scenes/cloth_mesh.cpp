@@ -211,9 +211,9 @@ std::vector<int> pieces_of(const ClothMesh& mesh) {
   join(mesh.quads);
   join(mesh.triangles);
   std::map<int, int> number;
-  std::vector<int> piece;
+  std::vector<int> piece(root.size());
   for (int v = 0; v < static_cast<int>(root.size()); ++v)
-    piece.push_back(number.try_emplace(root_of(v), static_cast<int>(number.size())).first->second);
+    piece[v] = number.try_emplace(root_of(v), static_cast<int>(number.size())).first->second;
   return piece;
 }
 

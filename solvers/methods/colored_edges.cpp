@@ -172,7 +172,7 @@ void ColoredEdges::add_list(std::span<const Link> links) {
 }
 
 void ColoredEdges::load(const Positions& x, Places& places) const {
-  double *to[3] = {places.col(0).data(), places.col(1).data(), places.col(2).data()};
+  double* to[3] = {places.col(0).data(), places.col(1).data(), places.col(2).data()};
   for (std::size_t k = 0; k < vertex_.size(); ++k) {
     const double* from = x.data() + 3 * vertex_[k];
     for (int axis = 0; axis < 3; ++axis) to[axis][k] = from[axis];

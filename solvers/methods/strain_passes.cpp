@@ -356,7 +356,7 @@ void PlacedContacts::load(const Contacts& contacts, const ColoredEdges& edges) {
   }
   for (int c = 0; c < contacts.count(); ++c) {
     const int place = edges.place(contacts.vertex(c)), i = place % width;
-    const Eigen::Vector3d normal = contacts.normal(c);
+    const Eigen::Vector3d& normal = contacts.normal(c);
     Block& block = blocks_[block_of_[place / width]];
     for (int axis = 0; axis < 3; ++axis) {
       normal_(place, axis) = normal[axis];
