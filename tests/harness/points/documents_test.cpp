@@ -90,8 +90,7 @@ void corrupt_and_read(const std::string& text, std::string (*read)(const std::st
 }
 
 TEST(Documents, CorruptedSuitesAreReadOrRefusedInALine) {
-  for (const char* name :
-       {"quick.json", "default.json", "pairs.json", "paper.json", "large.json"}) {
+  for (auto name : {"quick.json", "default.json", "pairs.json", "paper.json", "large.json"}) {
     const std::string text =
         harness::read_file(std::string(SOURCE_DIR) + "/configs/" + name, "suite");
     ASSERT_EQ(read_as_suite(text), "") << name;
