@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cstdlib>
 #include <map>
+#include <set>
 #include <sstream>
+#include <string_view>
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
@@ -14,7 +16,7 @@ namespace harness {
 namespace {
 
 // Those of the format that say nothing about vertices and faces.
-const std::set<std::string> left_out{
+constexpr std::string_view left_out[] = {
     "vt",     "vn",     "vp",     "l",          "g",        "o",        "s",   "mg",
     "usemtl", "mtllib", "usemap", "maplib",     "lod",      "bevel",    "p",   "deg",
     "bmat",   "step",   "cstype", "curv",       "curv2",    "surf",     "con", "parm",
@@ -64,7 +66,7 @@ void read_line(std::istringstream words, const std::string& where, int line, Mes
     MeshFile::Face& face = mesh.faces.emplace_back(MeshFile::Face{{}, line});
     while (words >> word) face.corners.push_back(corner_of(word, mesh.vertices.size(), where));
     if (face.corners.size() < 3) throw UsageError(where + ": a face needs three corners or more");
-  } else if (!word.empty() && !left_out.contains(word)) {
+  } else if (!word.empty() && std::ranges::find(left_out, word) == std::end(left_out)) {
     throw UsageError(where + ": '" + shortened(word) + "' is no keyword of an OBJ file");
   }
 }

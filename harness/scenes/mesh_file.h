@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -22,9 +21,8 @@ struct MeshFile {
 };
 
 // Vertices and faces. A byte order mark, comments after the data and lines continued by a
-// backslash are read as such; lines, curves, materials and groups are left out.
-// Throws UsageError, naming file and line, for any other keyword, numbers that are none, corners
-// without a vertex, and files without a face.
+// backslash are read as such; lines, curves, materials and groups are left out. Throws UsageError,
+// naming file and line, for other keywords, bad numbers, corners without a vertex, and no face.
 MeshFile read_mesh_file(const std::string& path);
 
 // Faces without those that have the corners of an earlier one. Throws UsageError, naming the face,

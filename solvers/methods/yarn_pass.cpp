@@ -7,7 +7,7 @@
 // the last pivot vanishes: pivots are kept from falling below a part of the diagonal.
 //
 // Yarns of one color are solved side by side, one in each lane of a vector (Thomas's algorithm in
-// step). A link waits for the division of the one before it, so a yarn that has no company is
+// step). A link waits for the division of the one before it, so a lone yarn is
 // eliminated from both ends at once (van der Vorst 1987), and the links at its middle last. Loops:
 // two passes over links forwards and one back a yarn.
 #include "solvers/methods/yarn_pass.h"

@@ -382,7 +382,7 @@ void TriangleCollider::find(const Eigen::Matrix3Xd& x, const std::vector<double>
       }
       const std::vector<int>& list = lists_[cell];
       work.triangle_tests += std::ssize(list);
-      ContactPlane& plane = planes.emplace_back();  // in place: a copy waits for what it copies
+      ContactPlane& plane = planes.emplace_back();  // filled in place: copying it stalls
       plane.vertex = static_cast<int>(v);
       if (!touches(list, p, depth, v, memory, plane)) planes.pop_back();
     }
