@@ -174,7 +174,7 @@ void SpringEnergy::hold_in_planes(const Contacts& contacts, bool matrix) {
   double* value = matrix_.solver->values();
   for (int c = 0; c < contacts.count(); ++c) {
     if (!contacts.holds(c)) continue;
-    const Eigen::Vector3d n = contacts.normal(c);
+    const Eigen::Vector3d& n = contacts.normal(c);
     const int f = matrix_.place[contacts.vertex(c)];
     auto g = gradient_.segment<3>(3 * f);
     reaction_[c] = n.dot(g);

@@ -38,7 +38,8 @@ void Bdf2History::add_step(const State& start, double h, const Positions& x,
   for (int contact = 0; contacts && contact < contacts->count(); ++contact) {
     if (!contacts->holds(contact)) continue;
     const int i = contacts->vertex(contact);
-    const Eigen::Vector3d n = contacts->normal(contact), mean = (x.col(i) - start.x.col(i)) / h;
+    const Eigen::Vector3d& n = contacts->normal(contact);
+    const Eigen::Vector3d mean = (x.col(i) - start.x.col(i)) / h;
     v.col(i) = contacts->end_velocity(contact, mean, v.col(i));
     if (contacts->stopped(contact)) {
       x_.col(i) = start.x.col(i);

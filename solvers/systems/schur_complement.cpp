@@ -71,7 +71,7 @@ void SchurComplement::subtract_contacts(const Contacts& contacts, const Eigen::M
   for (int c = 0; c < contacts.count(); ++c) {
     if (!contacts.holds(c)) continue;
     const int vertex = contacts.vertex(c);
-    const Eigen::Vector3d normal = contacts.normal(c);
+    const Eigen::Vector3d& normal = contacts.normal(c);
     for (int i = first_[vertex]; i < first_[vertex + 1]; ++i) {
       const Meeting& m = meetings_[i];
       values[m.entry] -= m.sign * inverse_mass_[vertex] * normal.dot(left.col(m.row)) *
