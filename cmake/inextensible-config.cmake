@@ -1,6 +1,4 @@
-# find_package(inextensible): targets
-#   inextensible::solvers  the library: methods, problem, steppers (linked statically)
-#   inextensible::plugin   headers alone, for a backend that bench loads (plugin.h); link it to a MODULE library
+# find_package(inextensible): the target inextensible::solvers, the library of methods, problem and steppers (linked statically)
 include(CMakeFindDependencyMacro)
 
 list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR})

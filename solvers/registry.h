@@ -1,5 +1,5 @@
 // The list of all backends: tests, sweeps, figures and the command line iterate it. A new backend
-// is its own file and one line in registry.cpp, or a plug-in (plugin.h).
+// is its own file and one line in registry.cpp, or a plug-in (inextensible.h).
 #pragma once
 
 #include <memory>

@@ -3,7 +3,7 @@
 // (Mueller et al. 2006). A correction needs no root, so that it is exact to first order only
 // (Jakobsen 2001). The world takes one step of h; its damping, sleeping, collisions and limits on
 // what a force may move are off.
-// Shear, bending and drag, where a scene has them, are forces that the plug-in gives to nodes.
+// Shear, bending and drag, where a scene has them, are forces that bench gives to nodes.
 // Loops: `velocity_iterations` + `iterations` passes over links a step.
 //
 // Departure: none from Bullet, whose world rounds the step to single precision. A node has no
@@ -14,127 +14,109 @@
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 #include <btBulletDynamicsCommon.h>
 
-#include <string>
+#include <memory>
+#include <vector>
 
 #include "contestants/common/engine.h"
 
 namespace {
 
-using inextensible::Problem;
-using inextensible::Status;
-
-btVector3 to_bullet(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-Eigen::Vector3d from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
+enum Setting { iterations, velocity_iterations, order };
 
 // A world with one body in it.
-struct World {
-  explicit World(const Problem& problem) {
-    btSoftBodyWorldInfo& info = dynamics.getWorldInfo();
-    info.m_gravity = to_bullet(problem.gravity());
+class BulletSoftBody : public engines::Engine {
+ public:
+  BulletSoftBody(const InextensibleScene& scene, const double* settings)
+      : vertices(scene.vertices) {
+    btSoftBodyWorldInfo& info = world_.getWorldInfo();
+    info.m_gravity = {scene.gravity[0], scene.gravity[1], scene.gravity[2]};
     info.air_density = info.water_density = 0;
     info.m_maxDisplacement = BT_LARGE_FLOAT;
-    std::vector<btScalar> mass = problem.mass();
-    for (const int vertex : problem.pinned()) mass[vertex] = 0;  // Bullet's word for infinite
-    const std::vector<btVector3> origin(mass.size(), btVector3(0, 0, 0));
-    body = std::make_unique<btSoftBody>(&info, problem.vertices(), origin.data(), mass.data());
-    body->m_materials[0]->m_kLST = 1;
-    body->m_cfg.kDP = 0;
-    body->m_cfg.collisions = 0;
-    body->m_cfg.diterations = 0;
-    for (int k = 0; k < problem.constraints(); ++k) {
-      body->appendLink(problem.edges()[k].a, problem.edges()[k].b);
-      btSoftBody::Link& link = body->m_links[k];
-      link.m_rl = problem.rest_length()[k];
+    const std::vector<btVector3> origin(static_cast<std::size_t>(vertices), btVector3(0, 0, 0));
+    body_ = std::make_unique<btSoftBody>(&info, vertices, origin.data(), scene.mass);
+    body_->m_materials[0]->m_kLST = 1;
+    body_->m_cfg.kDP = 0;
+    body_->m_cfg.collisions = 0;
+    body_->m_cfg.diterations = 0;
+    for (int k = 0; k < scene.edges; ++k) {
+      body_->appendLink(scene.edge[2 * k], scene.edge[2 * k + 1]);
+      btSoftBody::Link& link = body_->m_links[k];
+      link.m_rl = scene.rest_length[k];
       link.m_c1 = link.m_rl * link.m_rl;
     }
-    body->updateLinkConstants();
-    body->m_bUpdateRtCst = false;  // else Bullet takes the first positions for rest lengths
-    body->setActivationState(DISABLE_DEACTIVATION);
-    dynamics.addSoftBody(body.get());
+    body_->updateLinkConstants();
+    body_->m_bUpdateRtCst = false;  // else Bullet takes the first positions for rest lengths
+    body_->setActivationState(DISABLE_DEACTIVATION);
+    body_->m_cfg.piterations = static_cast<int>(settings[iterations]);
+    body_->m_cfg.viterations = static_cast<int>(settings[velocity_iterations]);
+    if (body_->m_cfg.viterations > 0)  // by default nothing is done in them
+      body_->m_cfg.m_vsequence.push_back(btSoftBody::eVSolver::Linear);
+    if (settings[order] == 1) body_->randomizeConstraints();
+    world_.addSoftBody(body_.get());
   }
-  World(const World&) = delete;
-  World& operator=(const World&) = delete;
-  ~World() { dynamics.removeSoftBody(body.get()); }
+  ~BulletSoftBody() { world_.removeSoftBody(body_.get()); }
 
-  btSoftBodyRigidBodyCollisionConfiguration configuration;
-  btCollisionDispatcher dispatcher{&configuration};
-  btDbvtBroadphase broadphase;
-  btSequentialImpulseConstraintSolver solver;
-  btSoftRigidDynamicsWorld dynamics{&dispatcher, &broadphase, &solver, &configuration};
-  std::unique_ptr<btSoftBody> body;
-};
-
-class BulletSoftBody final : public engines::EngineStepper {
- public:
-  static constexpr const char* name = "engine_bullet";
-
-  BulletSoftBody(std::shared_ptr<const Problem> shared, const inextensible::BackendOptions& options)
-      : EngineStepper(std::move(shared)), world_(problem()) {
-    const int iterations = options.count("iterations"),
-              velocity_iterations = options.count("velocity_iterations");
-    world_.body->m_cfg.piterations = iterations;
-    world_.body->m_cfg.viterations = velocity_iterations;
-    if (velocity_iterations > 0)  // by default nothing is done in them
-      world_.body->m_cfg.m_vsequence.push_back(btSoftBody::eVSolver::Linear);
-    if (options.word("order") == "random") world_.body->randomizeConstraints();
-    passes_ = iterations + velocity_iterations;
+  int put_in(InextensibleStep& step) {
+    if (btFuzzyZero(step.h)) {
+      step.reason = "Bullet takes no step so short";
+      return INEXTENSIBLE_NOT_CONVERGED;
+    }
+    for (int i = 0; i < vertices; ++i) {
+      btSoftBody::Node& node = body_->m_nodes[i];
+      for (int c = 0; c < 3; ++c) {
+        node.m_x[c] = step.x[3 * i + c];
+        node.m_v[c] = node.m_im > 0 ? step.v[3 * i + c] : 0;
+      }
+      if (step.force)
+        body_->addForce({step.force[3 * i], step.force[3 * i + 1], step.force[3 * i + 2]}, i);
+    }
+    return INEXTENSIBLE_OK;
   }
 
-  static std::vector<inextensible::SettingInfo> settings() {
-    return {{"iterations", 1.0, "passes over links that correct positions (piterations)",
-             inextensible::at_least_one, inextensible::SearchRange{1, 32}},
-            {"velocity_iterations", 0.0,
-             "passes over links before them that correct velocities (viterations)",
-             inextensible::count_from_zero, inextensible::SearchRange{0, 8}},
-            inextensible::word_setting(
-                "order", "mesh", "of links: the mesh's, or shuffled once (randomizeConstraints)",
-                {"mesh", "random"})};
+  int step(InextensibleStep& step) {
+    world_.stepSimulation(step.h, 0);
+    step.iterations = body_->m_cfg.viterations + body_->m_cfg.piterations;
+    step.edge_projections = step.iterations * body_->m_links.size();
+    return INEXTENSIBLE_OK;
   }
+
+  void take_out(InextensibleStep& step) {
+    for (int i = 0; i < vertices; ++i) {
+      for (int c = 0; c < 3; ++c) {
+        step.x[3 * i + c] = body_->m_nodes[i].m_x[c];
+        step.v[3 * i + c] = body_->m_nodes[i].m_v[c];
+      }
+    }
+  }
+
+  const int vertices;
 
  private:
-  StepResult put_in(const State& state, double h) override {
-    // Bullet takes no step for a time that it calls zero.
-    if (btFuzzyZero(h)) return {Status::not_converged, 0, -1, 0, "Bullet takes no step so short"};
-    for (int i = 0; i < problem().vertices(); ++i) {
-      btSoftBody::Node& node = world_.body->m_nodes[i];
-      node.m_x = to_bullet(state.x.col(i));
-      node.m_v = to_bullet(state.v.col(i));
-    }
-    for (const int pin : problem().pinned()) world_.body->m_nodes[pin].m_v.setZero();
-    return {};
-  }
-
-  void give_force(int vertex, const Eigen::Vector3d& force) override {
-    world_.body->addForce(to_bullet(force), vertex);
-  }
-
-  StepResult step(double h) override {
-    world_.dynamics.stepSimulation(h, 0);
-    work_.edge_projections += std::int64_t{passes_} * problem().constraints();
-    return {Status::ok, passes_};
-  }
-
-  void take_out(const State& /*start*/, Positions& x, Positions& v) override {
-    for (int i = 0; i < problem().vertices(); ++i) {
-      x.col(i) = from_bullet(world_.body->m_nodes[i].m_x);
-      v.col(i) = from_bullet(world_.body->m_nodes[i].m_v);
-    }
-  }
-
-  World world_;
-  int passes_ = 0;
+  btSoftBodyRigidBodyCollisionConfiguration configuration_;
+  btCollisionDispatcher dispatcher_{&configuration_};
+  btDbvtBroadphase broadphase_;
+  btSequentialImpulseConstraintSolver solver_;
+  btSoftRigidDynamicsWorld world_{&dispatcher_, &broadphase_, &solver_, &configuration_};
+  std::unique_ptr<btSoftBody> body_;
 };
+
+const char* const orders[] = {"mesh", "random", nullptr};
+const InextensibleSetting settings[] = {
+    {"iterations", "passes over links that correct positions (piterations)", 1, 1, 1e9, 1, 32, 1,
+     nullptr},
+    {"velocity_iterations", "passes over links before them that correct velocities (viterations)",
+     0, 0, 1e9, 0, 8, 1, nullptr},
+    {"order", "of links: the mesh's, or shuffled once (randomizeConstraints)", 0, 0, 0, 0, 0, 0,
+     orders}};
 
 }  // namespace
 
-extern "C" const InextensiblePlugin* inextensible_plugin() {
-  const std::string version =
-      "Bullet " + std::to_string(btGetVersion() / 100) + "." + std::to_string(btGetVersion() % 100);
-  return engines::plugin_of<BulletSoftBody>(version, "soft body of links (position-based), double",
-                                            "soft body", [](inextensible::Backend& row) {
-                                              row.takes_shear = row.takes_bending = row.takes_drag =
-                                                  true;
-                                              row.direction = inextensible::Direction::local;
-                                              row.citation = "Coumans 2022";
-                                            });
+const InextensiblePlugin* inextensible_plugin() {
+  return engines::plugin_of<BulletSoftBody>(
+      "engine_bullet",
+      "Bullet " + std::to_string(btGetVersion() / 100) + "." + std::to_string(btGetVersion() % 100),
+      "soft body of links (position-based), double", "soft body", "Coumans 2022",
+      INEXTENSIBLE_TAKES_SHEAR | INEXTENSIBLE_TAKES_BENDING | INEXTENSIBLE_TAKES_DRAG |
+          INEXTENSIBLE_WANTS_FORCES,
+      INEXTENSIBLE_LOCAL, settings);
 }

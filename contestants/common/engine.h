@@ -1,125 +1,101 @@
-// What all engines share: how they are made, their rows, and how they step.
+// What engines share: a class around an engine becomes a method of the C interface.
 #pragma once
 
-#include <stdexcept>
+#include <Eigen/Core>
+#include <chrono>
+#include <exception>
 #include <string>
-#include <vector>
 
-#include "solvers/methods/rows.h"
-#include "solvers/plugin.h"
-#include "solvers/problem/forces.h"
-#include "solvers/problem/stopwatch.h"
+#include "inextensible.h"
 
 namespace engines {
 
-// Throws std::invalid_argument for pins that move. An Engine has settings() and a `name`.
-template <class Engine>
-std::unique_ptr<inextensible::Stepper> make_engine(
-    std::shared_ptr<const inextensible::Problem> problem,
-    const inextensible::BackendOptions& options) {
-  if (problem->pins_follow_body())
-    throw std::invalid_argument(std::string("solver '") + Engine::name +
-                                "' takes no pins that move");
-  return std::make_unique<Engine>(std::move(problem), options);
+inline Eigen::Map<Eigen::Matrix3Xd> columns(double* vectors, Eigen::Index count) {
+  return {vectors, 3, count};
+}
+inline Eigen::Map<const Eigen::Matrix3Xd> columns(const double* vectors, Eigen::Index count) {
+  return {vectors, 3, count};
 }
 
-// The plug-in of one engine: its row with what engines do not take, completed by `complete`. The
-// version names the engine; `kind` and `label` are what follows it in the summary and in figures.
-template <class Engine, class Complete>
-const InextensiblePlugin* plugin_of(const std::string& version, const std::string& kind,
-                                    const std::string& label, const Complete& complete) {
-  static const std::string name = version, summary = version + ", " + kind,
-                           short_name = version + " " + label;
-  static const std::vector<inextensible::Backend> rows = [&] {
-    inextensible::Backend row{.name = Engine::name,
-                              .summary = summary.c_str(),
-                              .strain_control = inextensible::StrainControl::time_step,
-                              .contestant = true,
-                              .settings = Engine::settings(),
-                              .make = make_engine<Engine>,
-                              .origin = inextensible::Origin::engine,
-                              .label = short_name.c_str(),
-                              .family = "engines",
-                              .takes_shear = false,
-                              .takes_collider = false,
-                              .takes_bending = false,
-                              .takes_drag = false,
-                              .takes_implicit_forces = false};
-    complete(row);
-    return std::vector{row};
-  }();
-  static const auto plugin = inextensible_plugin_of(name.c_str(), rows);
+// Base of engines; each has a constructor from scene and settings, which throws std::exception for
+// a scene that it does not take, and
+//   int put_in(InextensibleStep&)    the state at the start of the step
+//   int step(InextensibleStep&)
+//   void take_out(InextensibleStep&)  the state at its end
+struct Engine {
+  void accept() {}  // after a step that was not refused
+  void build() {}   // anew, after an exception, when the engine's state cannot be trusted
+};
+
+template <class E>
+void* create(const InextensibleScene* scene, const double* settings, const char** reason) {
+  static std::string why;
+  try {
+    return new E(*scene, settings);
+  } catch (const std::exception& error) {
+    why = error.what();
+    *reason = why.c_str();
+    return nullptr;
+  }
+}
+
+template <class E>
+int take_step(void* object, InextensibleStep* step) {
+  E& engine = *static_cast<E*>(object);
+  using Clock = std::chrono::steady_clock;
+  auto seconds = [last = Clock::now()]() mutable {
+    const auto before = last;
+    last = Clock::now();
+    return std::chrono::duration<double>(last - before).count();
+  };
+  try {
+    if (const int refused = engine.put_in(*step)) return refused;
+    step->copy_seconds += seconds();
+    if (const int refused = engine.step(*step)) return refused;
+    seconds();
+    engine.take_out(*step);
+    step->copy_seconds += seconds();
+  } catch (const std::exception&) {
+    engine.build();
+    step->reason = "the engine gave up";
+    return INEXTENSIBLE_NOT_CONVERGED;
+  }
+  const Eigen::Index n = engine.vertices;
+  if (!std::isfinite(columns(step->x, n).sum() + columns(step->v, n).sum()))
+    return INEXTENSIBLE_NOT_FINITE;
+  engine.accept();
+  return INEXTENSIBLE_OK;
+}
+
+template <class E>
+void destroy(void* object) {
+  delete static_cast<E*>(object);
+}
+
+// The plug-in of one engine. The version names the engine; `kind` and `label` are what follows it
+// in the summary and in figures.
+template <class E, int count>
+const InextensiblePlugin* plugin_of(const char* name, const std::string& engine,
+                                    const std::string& kind, const std::string& label,
+                                    const char* citation, int flags, int direction,
+                                    const InextensibleSetting (&settings)[count]) {
+  static const std::string version = engine, summary = engine + ", " + kind,
+                           short_name = engine + " " + label;
+  static const InextensibleMethod method = {
+      name,
+      summary.c_str(),
+      short_name.c_str(),
+      citation,
+      INEXTENSIBLE_STEP,
+      flags | INEXTENSIBLE_NO_LIMIT | INEXTENSIBLE_MOMENTUM | INEXTENSIBLE_ENGINE,
+      direction,
+      count,
+      settings,
+      create<E>,
+      take_step<E>,
+      destroy<E>};
+  static const InextensiblePlugin plugin = {INEXTENSIBLE_BUILD, version.c_str(), 1, &method};
   return &plugin;
 }
-
-// A step of an engine: a state goes in, the engine steps, positions and velocities come out; the
-// parts are timed.
-class EngineStepper : public inextensible::Stepper {
- protected:
-  using Positions = inextensible::Positions;
-  using State = inextensible::State;
-  using StepResult = inextensible::StepResult;
-
-  explicit EngineStepper(std::shared_ptr<const inextensible::Problem> shared)
-      : Stepper(std::move(shared)), v_(3, problem().vertices()) {
-    if (problem().shear() || !problem().bending().empty() || problem().has_drag())
-      forces_.resize(3, problem().vertices());
-  }
-
- private:
-  virtual StepResult put_in(const State& state, double h) = 0;
-  // A force that is not the engine's own, on a vertex that is not pinned; N.
-  virtual void give_force(int /*vertex*/, const Eigen::Vector3d& /*force*/) {}
-  virtual StepResult step(double h) = 0;
-  // Positions and velocities of the vertices that are not pinned.
-  virtual void take_out(const State& start, Positions& x, Positions& v) = 0;
-  // Updates what a refused step must leave as it was.
-  virtual void accept(const Positions& /*x*/, const Positions& /*v*/) {}
-  // Rebuilds the engine after an exception, when its state cannot be trusted.
-  virtual void build() {}
-
-  StepResult solve(const State& state, double h, Positions& x) final try {
-    inextensible::Stopwatch stopwatch(phases_wanted_);
-    const StepResult ready = put_in(state, h);
-    if (!ready) return ready;
-    phases_.copy += stopwatch();
-    give_forces(state);
-    phases_.unconstrained += stopwatch();
-    const StepResult taken = step(h);
-    phases_.filter += stopwatch();
-    if (!taken) return taken;
-    take_out(state, x, v_);
-    for (const int pin : problem().pinned()) {
-      x.col(pin) = state.x.col(pin);  // -0 stays -0
-      v_.col(pin).setZero();
-    }
-    phases_.copy += stopwatch();
-    return taken;
-  } catch (const std::exception&) {
-    build();
-    return {inextensible::Status::not_converged, 0, -1, 0, "the engine gave up"};
-  }
-
-  // All but the weight, which is the engine's.
-  void give_forces(const State& state) {
-    if (forces_.size() == 0) return;
-    forces_.setZero();
-    add_forces(problem(), state.x, state.x, state.v, forces_, work_);
-    for (int i = 0; i < problem().vertices(); ++i) {
-      if (problem().inverse_mass()[i] > 0)
-        give_force(i, forces_.col(i) - problem().mass()[i] * problem().gravity());
-    }
-  }
-
-  StepResult end_velocities(const State& /*start*/, double /*h*/, const Positions& x,
-                            Positions& v) final {
-    v = v_;
-    accept(x, v);
-    return {};
-  }
-
-  Positions forces_;  // empty where a problem has none but the weight
-  Positions v_;
-};
 
 }  // namespace engines

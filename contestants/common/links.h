@@ -1,29 +1,12 @@
 // A chain that hangs from one pinned end, as links in place of vertices, for engines in joint
-// (reduced) coordinates. Includes no header of the library, because some engines' headers are not
-// C++20.
+// (reduced) coordinates: one angle a link as long as the chain stays in the plane of x and y.
 #pragma once
 
-#include <Eigen/Core>
 #include <vector>
 
-namespace inextensible {
-class Problem;
-struct State;
-}  // namespace inextensible
+#include "contestants/common/engine.h"
 
 namespace engines {
-
-// Link i ends at vertex[i], of mass[i], and begins at vertex[i - 1]; link 0 begins at the pin.
-struct Links {
-  // Throws std::invalid_argument, saying why, for a problem that is not such a chain.
-  explicit Links(const inextensible::Problem& problem);
-
-  int count() const { return static_cast<int>(vertex.size()); }
-
-  int pin = -1;
-  std::vector<int> vertex;
-  std::vector<double> length, mass;
-};
 
 // Orientation and rotation of a link.
 struct LinkPose {
@@ -31,15 +14,28 @@ struct LinkPose {
   Eigen::Vector3d rate;  // rad/s, against the link before it, without spin about itself
 };
 
-using LinkPoses = std::vector<LinkPose>;
+// Link i ends at vertex[i], of mass[i], and begins at vertex[i - 1]; link 0 begins at the pin.
+class Links {
+ public:
+  // Throws std::invalid_argument, saying why, for a scene that is not such a chain.
+  explicit Links(const InextensibleScene& scene);
 
-// Whether positions, velocities and gravity are in the plane of x and y: one angle a link suffices.
-bool planar(const Links& links, const inextensible::Problem& problem,
-            const inextensible::State& state);
+  int count() const { return static_cast<int>(vertex.size()); }
 
-// Finds the pose of every link in a state. Lengths are the chain's, not the state's, so velocities
-// along a link are lost. False if a link has no direction.
-bool find_poses(const Links& links, const inextensible::State& state, bool planar,
-                LinkPoses& poses);
+  // Finds the pose of every link in a state. Lengths are the chain's, not the state's, so
+  // velocities along a link are lost. A state that is not planar makes the chain one in space,
+  // which it stays. False if a link has no direction.
+  bool find_poses(const double* x, const double* v);
+
+  int pin = -1;
+  std::vector<int> vertex;
+  std::vector<double> length, mass;
+  Eigen::Vector3d gravity;
+  std::vector<LinkPose> poses;
+  bool flat = false;  // positions, velocities and gravity have been in the plane of x and y
+
+ private:
+  bool planar(const double* x, const double* v) const;
+};
 
 }  // namespace engines

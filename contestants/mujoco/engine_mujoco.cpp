@@ -14,17 +14,16 @@
 #include <cstdio>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 
-#include "contestants/common/chain_stepper.h"
+#include "contestants/common/links.h"
 
 namespace {
 
 using engines::Links;
-using inextensible::Problem;
-using inextensible::Status;
 
 struct Free {
   void operator()(mjModel* model) const { mj_deleteModel(model); }
@@ -65,8 +64,9 @@ std::string bodies_text(const Links& links, int hinges, int first) {
 }
 
 // The model's files; each includes the next one.
-std::vector<std::string> model_files(const Links& links, const Eigen::Vector3d& gravity, int hinges,
-                                     int integrator) {
+std::vector<std::string> model_files(const Links& links, int integrator) {
+  const int hinges = links.flat ? 1 : 2;  // of a link
+  const Eigen::Vector3d& gravity = links.gravity;
   std::ostringstream text;
   text.precision(std::numeric_limits<double>::max_digits10);
   text << "<mujoco><compiler boundmass='0'/><size njmax='1' nconmax='1' nstack='"
@@ -114,100 +114,103 @@ struct Integrator {
 constexpr Integrator integrators[] = {
     {"rk4", mjINT_RK4, 4, 0}, {"implicit", mjINT_IMPLICIT, 1, 1}, {"euler", mjINT_EULER, 1, 0}};
 
-class MujocoChain final : public engines::ChainStepper {
+class MujocoChain : public engines::Engine {
  public:
-  static constexpr const char* name = "engine_mujoco";
-
-  MujocoChain(std::shared_ptr<const Problem> shared, const inextensible::BackendOptions& options)
-      : ChainStepper(std::move(shared), options) {
-    for (const Integrator& one : integrators) {
-      if (options.word("integrator") == one.name) integrator_ = one;
-    }
+  MujocoChain(const InextensibleScene& scene, const double* settings)
+      : vertices(scene.vertices),
+        links_(scene),
+        integrator_(integrators[static_cast<int>(settings[0])]) {
     build();
   }
 
-  static std::vector<inextensible::SettingInfo> settings() {
-    std::vector<const char*> names;
-    for (const Integrator& one : integrators) names.push_back(one.name);
-    return {inextensible::word_setting(
-        "integrator", integrators[0].name,
-        "Runge and Kutta's of order 4, implicit in velocities, or semi-implicit", names)};
-  }
-
- private:
-  int hinges() const { return flat_ ? 1 : 2; }  // of a link
-
-  void build() override {
-    model_ = load(model_files(links_, problem().gravity(), hinges(), integrator_.number));
+  void build() {
+    built_flat_ = links_.flat;
+    model_ = load(model_files(links_, integrator_.number));
     model_->opt.integrator = integrator_.number;
     std::fill_n(model_->body_inertia, 3 * model_->nbody, 0.0);
     data_.reset(mj_makeData(model_.get()));
     if (!data_) throw std::bad_alloc();
   }
 
-  StepResult put_in(const State& state, double /*h*/) override {
-    const StepResult found = find(state);
-    if (!found) return found;
+  int put_in(InextensibleStep& step) {
+    pin_ = engines::columns(step.x, vertices).col(links_.pin);
+    if (!links_.find_poses(step.x, step.v)) {
+      step.reason = "a link has no direction";
+      return INEXTENSIBLE_NOT_FINITE;
+    }
+    if (built_flat_ != links_.flat) build();
+    const int hinges = links_.flat ? 1 : 2;
     Eigen::Quaterniond before = Eigen::Quaterniond::Identity();
     for (int i = 0; i < links_.count(); ++i) {
-      const Eigen::Matrix3d& axes = poses_[i].axes;
+      const auto& [axes, rate] = links_.poses[i];
       const Eigen::Quaterniond turned(axes);
       const Eigen::Quaterniond against = before.conjugate() * turned;
       mjtNum* quaternion = model_->body_quat + 4 * (i + 1);
       quaternion[0] = against.w();
       for (int c = 0; c < 3; ++c) quaternion[1 + c] = against.vec()[c];
-      mjtNum* qvel = data_->qvel + hinges() * i;
-      qvel[0] = poses_[i].rate.dot(axes.col(2));
-      if (hinges() == 2) qvel[1] = poses_[i].rate.dot(axes.col(1));
+      mjtNum* qvel = data_->qvel + hinges * i;
+      qvel[0] = rate.dot(axes.col(2));
+      if (hinges == 2) qvel[1] = rate.dot(axes.col(1));
       before = turned;
     }
     mju_zero(data_->qpos, model_->nq);
     std::memset(data_->warning, 0, sizeof(data_->warning));
-    return found;
+    return INEXTENSIBLE_OK;
   }
 
-  StepResult step(double h) override {
-    model_->opt.timestep = h;
+  int step(InextensibleStep& step) {
+    model_->opt.timestep = step.h;
     mj_step(model_.get(), data_.get());
     // After one of these warnings MuJoCo has reset itself.
     for (const int warning : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC}) {
-      if (data_->warning[warning].number != 0)
-        return {Status::not_finite, 0, -1, 0, "MuJoCo met a number above 1e10"};
+      if (data_->warning[warning].number == 0) continue;
+      step.reason = "MuJoCo met a number above 1e10";
+      return INEXTENSIBLE_NOT_FINITE;
     }
-    work_.assemblies += integrator_.evaluations;
-    work_.factorizations += integrator_.evaluations + integrator_.factorizations;
-    work_.back_solves += integrator_.evaluations + integrator_.factorizations;
-    return {Status::ok, integrator_.evaluations};
+    step.iterations = step.assemblies = integrator_.evaluations;
+    step.factorizations = step.back_solves = integrator_.evaluations + integrator_.factorizations;
+    return INEXTENSIBLE_OK;
   }
 
   // MuJoCo's chain hangs on the origin.
-  void take_out(const State& start, Positions& x, Positions& v) override {
+  void take_out(InextensibleStep& step) {
     mj_kinematics(model_.get(), data_.get());
     mj_comPos(model_.get(), data_.get());
     mj_comVel(model_.get(), data_.get());
     for (int i = 0; i < links_.count(); ++i) {
       mjtNum spin_and_velocity[6];
       mj_objectVelocity(model_.get(), data_.get(), mjOBJ_BODY, i + 1, spin_and_velocity, 0);
-      x.col(links_.vertex[i]) = Eigen::Map<const Eigen::Vector3d>(data_->xipos + 3 * (i + 1));
-      v.col(links_.vertex[i]) = Eigen::Map<const Eigen::Vector3d>(spin_and_velocity + 3);
+      engines::columns(step.x, vertices).col(links_.vertex[i]) =
+          pin_ + Eigen::Map<const Eigen::Vector3d>(data_->xipos + 3 * (i + 1));
+      engines::columns(step.v, vertices).col(links_.vertex[i]) =
+          Eigen::Map<const Eigen::Vector3d>(spin_and_velocity + 3);
     }
-    x.colwise() += start.x.col(links_.pin);
   }
 
-  Integrator integrator_ = integrators[0];
+  const int vertices;
+
+ private:
+  Links links_;
+  bool built_flat_ = false;
+  Eigen::Vector3d pin_;
+  const Integrator integrator_;
   std::unique_ptr<mjModel, Free> model_;
   std::unique_ptr<mjData, Free> data_;
 };
 
+const char* const words[] = {integrators[0].name, integrators[1].name, integrators[2].name,
+                             nullptr};
+const InextensibleSetting settings[] = {
+    {"integrator", "Runge and Kutta's of order 4, implicit in velocities, or semi-implicit", 0, 0,
+     0, 0, 0, 0, words}};
+
 }  // namespace
 
-extern "C" const InextensiblePlugin* inextensible_plugin() {
+const InextensiblePlugin* inextensible_plugin() {
   mju_user_error = throw_error;
   mju_user_warning = [](const char*) {};  // else it writes them to a file; steps look for them
-  return engines::plugin_of<MujocoChain>(std::string("MuJoCo ") + mj_versionString(),
-                                         "a chain of hinges (joint coordinates)", "hinges",
-                                         [](inextensible::Backend& row) {
-                                           row.citation = "Todorov, Erez and Tassa 2012";
-                                           row.velocities = inextensible::Velocities::whole_step;
-                                         });
+  return engines::plugin_of<MujocoChain>(
+      "engine_mujoco", std::string("MuJoCo ") + mj_versionString(),
+      "a chain of hinges (joint coordinates)", "hinges", "Todorov, Erez and Tassa 2012",
+      INEXTENSIBLE_WHOLE_STEP, INEXTENSIBLE_UNKNOWN, settings);
 }

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <string>
 
-#include "solvers/plugin.h"
+#include "solvers/c_method.h"
 #include "solvers/problem/edge_constraints.h"
 #include "solvers/problem/forces.h"
 #include "solvers/registry.h"
@@ -37,7 +37,8 @@ inline void load(const std::string& plugin) {
   const auto entry =
       reinterpret_cast<decltype(&inextensible_plugin)>(dlsym(library, "inextensible_plugin"));
   ASSERT_TRUE(entry);
-  inextensible::add_backends({entry()->backends, entry()->backend_count});
+  const std::vector rows{inextensible::row_of(entry()->methods[0])};
+  inextensible::add_backends(rows);
 }
 
 inline Scene finished(ProblemParts parts, Positions x, Positions v) {

@@ -255,7 +255,7 @@ int run(int argc, char** argv) {
            [&plugins](const Words& files) {
              plugins.insert(plugins.end(), files.begin(), files.end());
            },
-           "load solvers of your own from a shared library (solvers/plugin.h); repeatable")
+           "load solvers of your own from a shared library (solvers/inextensible.h); repeatable")
         ->allow_extra_args(false)
         ->type_name("FILE");
   }

@@ -3,18 +3,26 @@
 #include <dlfcn.h>
 
 #include <algorithm>
+#include <cfenv>
+#include <clocale>
+#include <cstring>
+#include <deque>
 #include <filesystem>
-#include <span>
 #include <stdexcept>
 
+#include "harness/base/child_process.h"
 #include "harness/base/errors.h"
 #include "harness/base/pattern.h"
-#include "solvers/plugin.h"
+#include "solvers/c_method.h"
+#include "solvers/registry.h"
 
 namespace harness {
 namespace {
 
 std::vector<Plugin> loaded;
+std::deque<InextensibleMethod>
+    adopted_methods;  // of all plug-ins; rows of the registry refer to them
+std::deque<std::vector<InextensibleSetting>> adopted_settings;
 
 using EntryPoint = decltype(&inextensible_plugin);
 
@@ -29,38 +37,67 @@ EntryPoint entry_point(const std::string& path) {
   void* symbol = dlsym(library, "inextensible_plugin");
   if (!symbol)
     throw std::runtime_error(
-        "it is not a plug-in: it has no function inextensible_plugin (solvers/plugin.h)");
+        "it is not a plug-in: it has no function inextensible_plugin (solvers/inextensible.h)");
   return reinterpret_cast<EntryPoint>(symbol);
 }
 
-void check_stamp(const InextensiblePlugin& plugin) {
-  const auto refuse = [](const std::string& why, std::int64_t there, std::int64_t here) {
-    throw std::runtime_error("it was built differently: " + why + " is " + std::to_string(there) +
-                             " there, " + std::to_string(here) +
-                             " here; build it against this program's headers");
-  };
-  if (plugin.abi != INEXTENSIBLE_PLUGIN_ABI)
-    refuse("version of the plug-in interface", plugin.abi, INEXTENSIBLE_PLUGIN_ABI);
-  if (plugin.stamp_items != std::size(inextensible_stamp))
-    refuse("length of its stamp", plugin.stamp_items, std::size(inextensible_stamp));
-  for (std::size_t i = 0; i < std::size(inextensible_stamp); ++i) {
-    const InextensibleStampItem &here = inextensible_stamp[i], &there = plugin.stamp[i];
-    if (here.value != there.value) refuse(here.what, there.value, here.value);
-  }
+const InextensiblePlugin& table_of(const std::string& path) {
+  const InextensiblePlugin* table = entry_point(path)();
+  if (!table) throw std::runtime_error("inextensible_plugin() returned nothing");
+  if (table->abi != INEXTENSIBLE_ABI)
+    throw std::runtime_error("it was built for version " + std::to_string(table->abi) +
+                             " of the interface, this program has version " +
+                             std::to_string(INEXTENSIBLE_ABI));
+  if (!has_form(table->version ? table->version : "", "[ -~]+"))
+    throw std::runtime_error("its version is not printable text");
+  if (table->method_count < 1 || !table->methods) throw std::runtime_error("it brings no solver");
+  return *table;
+}
+
+// A plug-in's array of structs, `size` bytes each there: fields that it does not know are 0.
+template <class Struct>
+std::vector<Struct> adopted(const Struct* first, std::int32_t count, std::uint32_t size) {
+  std::vector<Struct> here(static_cast<std::size_t>(std::max(count, 0)));
+  for (std::size_t i = 0; i < here.size(); ++i)
+    std::memcpy(&here[i], reinterpret_cast<const char*>(first) + i * size,
+                std::min<std::size_t>(size, sizeof(Struct)));
+  return here;
+}
+
+// A crash here is not one of the program.
+void try_in_child(const std::string& path) {
+  const ChildOutcome child = run_in_child(
+      [&path](Heartbeat&) {
+        table_of(path);
+        return std::string();
+      },
+      {.timeout = 60, .interrupted = interrupted});
+  if (child.end == ChildOutcome::End::interrupted) throw Interrupted();
+  if (child.end == ChildOutcome::End::threw) throw std::runtime_error(child.text);
+  if (child.end == ChildOutcome::End::timed_out)
+    throw std::runtime_error("it takes more than a minute to load");
+  if (child.end != ChildOutcome::End::returned)
+    throw std::runtime_error(ending(child) + " while it was loaded");
 }
 
 Plugin add(const std::string& path) {
-  const InextensiblePlugin* table = entry_point(path)();
-  if (!table) throw std::runtime_error("inextensible_plugin() returned nothing");
-  check_stamp(*table);
-  Plugin plugin{std::filesystem::path(path).filename().string(),
-                table->version ? table->version : "",
-                {},
-                table->optimized};
-  if (!has_form(plugin.version, "[ -~]+"))
-    throw std::runtime_error("its version is not printable text");
-  const std::span rows(table->backends, table->backend_count);
-  if (rows.empty()) throw std::runtime_error("it brings no solver");
+  try_in_child(path);
+  std::fenv_t numbers;
+  std::fegetenv(&numbers);
+  const std::string locale = std::setlocale(LC_ALL, nullptr);
+  const InextensiblePlugin& table = table_of(path);
+  std::fesetenv(&numbers);
+  std::setlocale(LC_ALL, locale.c_str());
+  Plugin plugin{
+      std::filesystem::path(path).filename().string(), table.version, {}, table.optimized != 0};
+  std::vector<inextensible::Backend> rows;
+  for (InextensibleMethod& method : adopted(table.methods, table.method_count, table.method_size)) {
+    method.settings =
+        adopted_settings
+            .emplace_back(adopted(method.settings, method.setting_count, table.setting_size))
+            .data();
+    rows.push_back(inextensible::row_of(adopted_methods.emplace_back(method)));
+  }
   inextensible::add_backends(rows);
   for (const auto& row : rows) plugin.solvers.emplace_back(row.name);
   return plugin;
@@ -71,6 +108,8 @@ Plugin add(const std::string& path) {
 void load_plugin(const std::string& path) {
   try {
     loaded.push_back(add(path));
+  } catch (const Interrupted&) {
+    throw;
   } catch (const std::exception& error) {
     std::string why = error.what();
     std::replace(why.begin(), why.end(), '\n', ' ');

@@ -1,4 +1,4 @@
-// Backends from shared libraries (`bench --plugin FILE`, solvers/plugin.h).
+// Methods from shared libraries (`bench --plugin FILE`, solvers/inextensible.h).
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -15,8 +15,10 @@ struct Plugin {
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Plugin, file, version, solvers, optimized)
 
-// Adds the file's backends to the registry; at program start. Throws UsageError, having added
-// nothing, if it is not a plug-in, was built unlike this program, or brings a solver that exists.
+// Adds the file's methods to the registry; at program start. A child loads it first, so that one
+// that crashes or ends the program is refused. Locale and floating-point environment stay as they
+// are. Throws UsageError, having added nothing, if it is not a plug-in, has another version of the
+// interface, or brings a solver that exists.
 void load_plugin(const std::string& path);
 
 const std::vector<Plugin>& loaded_plugins();  // in the order of loading

@@ -1,9 +1,10 @@
-// A method as the program knows it: one row, at the end of the method's own .cpp or in a plug-in
-// (plugin.h). Whatever else the program needs to know of a method it reads from the row; nothing
-// asks for a method by its name.
+// A method as the program knows it: one row, at the end of the method's own .cpp, or made of a
+// plug-in's (c_method.h). Whatever else the program needs to know of a method it reads from the
+// row; nothing asks for a method by its name.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -90,9 +91,10 @@ struct Backend {
   std::vector<SettingInfo> settings = {};
   // A velocity filter has `make_filter` and works in any stepper; where its corrections point
   // concerns it only if it `takes_middle`. Other methods have `make`: a time step of their own.
-  std::unique_ptr<Stepper> (*make)(std::shared_ptr<const Problem>, const BackendOptions&) = nullptr;
-  std::unique_ptr<VelocityFilter> (*make_filter)(const Problem&, const BackendOptions&,
-                                                 Along along) = nullptr;
+  std::function<std::unique_ptr<Stepper>(std::shared_ptr<const Problem>, const BackendOptions&)>
+      make = nullptr;
+  std::function<std::unique_ptr<VelocityFilter>(const Problem&, const BackendOptions&, Along along)>
+      make_filter = nullptr;
   bool takes_middle = false;
   Direction direction = Direction::none;
   const char* citation = "";  // author and year

@@ -1,27 +1,32 @@
 // A plug-in whose copies are of different kinds, which their files' names tell. plugin_test.sh and
 // interrupts_test.sh load them.
-//   Misfits, that bench must refuse: another_version, taken_name, throws, and another_alignment,
-//   which has flags of its own; broken, which it must find to do nothing; hangs, which never ends a
-//   step. Fast projection once more:
+//   Misfits, that bench must refuse: another_version, taken_name, throws, crashes and exits.
+//   Ones that must fail in their own runs only: broken does nothing, hangs never ends a step,
+//   throws_later throws in every step.
+//   Gauss-Seidel in the order of the mesh:
 //     plain  as it is
-//     slow   every projection made four times: what bench ab must see
+//     slow   every pass made four times, three of them in vain: what bench ab must see
 //     loud   prints to standard output, by C and by C++, as it is loaded, used and unloaded
-//     bare   takes neither shear nor a collider
+//     bare   takes no collider
 #include <dlfcn.h>
 #include <unistd.h>
 
+#include <cfenv>
+#include <clocale>
+#include <cmath>
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <stdexcept>
-#include <string_view>
+#include <string>
+#include <vector>
 
-#include "solvers/plugin.h"
+#include "inextensible.h"
 
 namespace {
 
-using namespace inextensible;
-
-bool is(std::string_view kind) {
+bool is(const char* kind) {
   Dl_info info;
   return dladdr(reinterpret_cast<const void*>(&is), &info) != 0 &&
          std::string_view(info.dli_fname).ends_with("_" + std::string(kind) + ".so");
@@ -38,59 +43,82 @@ struct AtBothEnds {
   ~AtBothEnds() { print_if_loud(); }
 } const at_both_ends;
 
-struct Nothing final : VelocityFilter {
-  Nothing(const Problem&, const BackendOptions&) {}
-  StepResult apply(const Positions&, double, Iterate, WorkCounters&) override {
-    while (is("hangs")) pause();
-    return {};
-  }
+struct Passes {
+  InextensibleScene scene;
+  bool slow = is("slow");
+  std::vector<double> copy;
 };
 
-class Repeated final : public VelocityFilter {
- public:
-  Repeated(const Problem& problem, const BackendOptions& options)
-      : inner_(make_velocity_filter("fast_projection", problem, {options.strain_limit})) {}
+void* create(const InextensibleScene* scene, const double*, const char**) {
+  return new Passes{.scene = *scene, .copy = {}};
+}
 
-  StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override {
-    print_if_loud();
-    for (int i = 0; i < in_vain_; ++i) {
-      copy_ = x;
-      inner_->apply(x_start, h, copy_, not_counted_);
+// Corrects each edge that is out of bounds; whether there was one.
+bool pass(const InextensibleScene& scene, double* x) {
+  bool corrected = false;
+  for (int k = 0; k < scene.edges; ++k) {
+    const int a = scene.edge[2 * k], b = scene.edge[2 * k + 1];
+    const double wa = scene.mass[a] > 0 ? 1 / scene.mass[a] : 0;
+    const double wb = scene.mass[b] > 0 ? 1 / scene.mass[b] : 0;
+    double d[3], squared = 0;
+    for (int c = 0; c < 3; ++c) {
+      d[c] = x[3 * b + c] - x[3 * a + c];
+      squared += d[c] * d[c];
     }
-    return inner_->apply(x_start, h, x, work);
+    const double strain = std::sqrt(squared) / scene.rest_length[k] - 1;
+    if (std::abs(strain) <= scene.strain_limit) continue;
+    corrected = true;
+    const double share = strain / (1 + strain) / (wa + wb);
+    for (int c = 0; c < 3; ++c) {
+      x[3 * a + c] += wa * share * d[c];
+      x[3 * b + c] -= wb * share * d[c];
+    }
   }
-
- private:
-  std::unique_ptr<VelocityFilter> inner_;
-  int in_vain_ = is("slow") ? 3 : 0;
-  Positions copy_;
-  WorkCounters not_counted_;
-};
-
-template <class Filter>
-std::unique_ptr<Stepper> make(std::shared_ptr<const Problem> problem,
-                              const BackendOptions& options) {
-  auto filter = std::make_unique<Filter>(*problem, options);
-  return std::make_unique<FilterStepper>(std::move(problem), std::move(filter));
+  return corrected;
 }
 
-Backend row() {
-  const auto limit = StrainControl::strain_limit;
-  for (const char* kind : {"plain", "slow", "loud", "bare"}) {
-    if (!is(kind)) continue;
-    Backend sound{"sound", "fast projection once more", limit, true, {}, make<Repeated>};
-    if (is("bare")) sound.takes_shear = sound.takes_collider = false;
-    return sound;
-  }
-  return {is("taken_name") ? "shake" : "misfit", "does nothing", limit, true, {}, make<Nothing>};
+int filter(void* object, InextensibleStep* step) {
+  auto& [scene, slow, copy] = *static_cast<Passes*>(object);
+  print_if_loud();
+  while (is("hangs")) pause();
+  if (is("throws_later")) throw 42;
+  if (is("broken")) return INEXTENSIBLE_OK;
+  do {
+    for (int i = 0; slow && i < 3; ++i) {
+      copy.assign(step->x, step->x + 3 * scene.vertices);
+      pass(scene, copy.data());
+    }
+    if (step->iterations++ == 100'000) {
+      step->reason = "too many passes";
+      return INEXTENSIBLE_NOT_CONVERGED;
+    }
+    step->edge_projections += scene.edges;
+    if (step->settle) step->settle(step);
+  } while (pass(scene, step->x));
+  return std::isfinite(step->x[0]) ? INEXTENSIBLE_OK : INEXTENSIBLE_NOT_FINITE;
 }
+
+void destroy(void* object) { delete static_cast<Passes*>(object); }
 
 }  // namespace
 
 extern "C" const InextensiblePlugin* inextensible_plugin() {
-  static const std::vector<Backend> rows{row()};
-  static InextensiblePlugin plugin = inextensible_plugin_of("1.0", rows);
+  static InextensibleMethod method{};
+  const bool misfit = is("broken") || is("hangs") || is("throws_later");
+  method.name = is("taken_name") ? "shake" : misfit ? "misfit" : "sound";
+  method.summary = misfit ? "does nothing of use" : "Gauss-Seidel in the order of the mesh";
+  method.kind = INEXTENSIBLE_FILTER;
+  method.flags = is("bare") ? 0 : INEXTENSIBLE_TAKES_COLLIDER;
+  method.direction = INEXTENSIBLE_LOCAL;
+  method.create = create;
+  method.step = filter;
+  method.destroy = destroy;
+  static InextensiblePlugin plugin{INEXTENSIBLE_BUILD, "1.0", 1, &method};
   if (is("another_version")) plugin.abi = 999;
   if (is("throws")) throw std::runtime_error("no licence\nfor today");
+  if (is("crashes")) std::raise(SIGSEGV);
+  if (is("exits")) std::exit(3);
+  std::fesetround(FE_UPWARD);  // none of this is to reach the program
+  std::setlocale(LC_ALL, "C.UTF-8");
   return &plugin;
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# From an installed bench: a solver and a program out of the tree are built with find_package; the solver is listed, swept,
+# From an installed bench: the solver of docs/plugins.md and a program out of the tree are built; the solver is listed, swept,
 # recorded and checked; what does not fit gives one clear line and exit 2.
 . "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../../harness/cli/functions.sh"
 
@@ -9,13 +9,18 @@ quietly() {
 }
 
 quietly cmake --install "$BUILD_FOLDER" --prefix "$PWD/installed"
-# Not with bench's own -march: what crosses the border must not depend on it.
-CMAKE_GENERATOR=Ninja quietly cmake -S "$EXAMPLE" -B example -DCMAKE_PREFIX_PATH="$PWD/installed"
-quietly cmake --build example
-bench=$PWD/installed/bin/bench plugin=example/libmy_solver.so
+bench=$PWD/installed/bin/bench plugin=./my_solver.so
 BENCH_BINARY=$bench  # of `refused`
 
-example/rope >rope.txt || fail "the program of one's own: $(cat rope.txt)"
+# The page's solver, by the page's command; and strictly by the standard, without bench's flags.
+sed -n '/^<!-- file: my_solver.c -->$/,/^```$/p' "$SOURCE_FOLDER/docs/plugins.md" | sed '1,2d;$d' >my_solver.c
+ln -s "$SOURCE_FOLDER/solvers" solvers
+quietly "$CC" -std=c99 -Wall -Wextra -Wpedantic -Werror -O2 -shared -fPIC -Iinstalled/include my_solver.c -o strict.so -lm
+eval "quietly $(grep -m1 '^cc -O2 -shared' "$SOURCE_FOLDER/docs/plugins.md")"
+
+CMAKE_GENERATOR=Ninja quietly cmake -S "$SOURCE_FOLDER/tests/solvers/plugin/rope" -B rope -DCMAKE_PREFIX_PATH="$PWD/installed"
+quietly cmake --build rope
+rope/rope >rope.txt || fail "the program of one's own: $(cat rope.txt)"
 
 # The option may stand before and after the command.
 "$bench" --plugin "$plugin" list solvers | grep -q '^  symmetric_sweeps: ' || fail "list does not show the plug-in's solver"
@@ -33,7 +38,7 @@ tiny --exclude 'jacobi|icd|shake|rattle|springs|yarn_projection|adaptive|xpbd|bd
 import json
 document = json.load(open("results/local/pairs-strain.json"))
 assert document["context"]["plugins"] == [
-    {"file": "libmy_solver.so", "version": "1.0", "solvers": ["symmetric_sweeps"], "optimized": True}], document["context"]
+    {"file": "my_solver.so", "version": "1.0", "solvers": ["symmetric_sweeps"], "optimized": True}], document["context"]
 best = {p["solver"] for p in document["points"] if p["best"]}
 assert {"symmetric_sweeps", "gauss_seidel", "fast_projection"} <= best, best
 mine = [p for p in document["points"] if p["solver"] == "symmetric_sweeps" and p["best"]][0]
@@ -63,7 +68,7 @@ use() {
     film) words=(--scene chain --set n=9 --set duration=0.1 --solver fast_projection --stills 0.05 --width 160 --out film.png) ;;
     choose) words=(--scene chain --n 5 --solver fast_projection --seconds 20 --error 0.5) ;;
     check) words=(--solver fast_projection --quick) ;;
-    claims) words=("$EXAMPLE/../../../../results/paper-strain-chain.json") ;;
+    claims) words=("$SOURCE_FOLDER/results/paper-strain-chain.json") ;;
     compare) words=(small.json small.json) ;;
     baseline) words=(small.json --out baseline.json) ;;
     ab) words=("$bench" "$bench" --scene chain --solver fast_projection --filter 'strain:0.01/' --pairs 4 --sample-seconds 0.001) ;;
@@ -89,6 +94,12 @@ grep -q '^PASS  hard cases' check.txt || fail "no hard cases: $(cat check.txt)"
 grep -q '^FAIL  limit .*(allowed 1)$' check.txt && grep -q '^      -> .*edge [0-9]* is strained' check.txt &&
   grep -q '^misfit does not conform: ' check.txt || fail "a broken solver must not conform: $(cat check.txt)"
 refused "did you mean 'symmetric_sweeps'" --plugin "$plugin" check --solver symetric_sweeps
+
+# What it throws costs it its own points, and how it rounds when it is loaded no one else's.
+point() { "$bench" "$@" point <point.txt | /usr/bin/python3 -c 'import json, sys; p = json.load(sys.stdin); print(p["status"], p["max_strain"], p["rms_strain"])'; }
+sed 's/fast_projection/misfit/g' point.txt >thrown.txt
+"$bench" --plugin "$kinds/libplugin_throws_later.so" point <thrown.txt | grep -q 'the plug-in threw an exception' || fail "a plug-in that throws"
+[[ $(point) == "$(point --plugin "$kinds/libplugin_plain.so")" ]] || fail "a plug-in's rounding mode reaches others"
 
 # ---- What a row may lack ----
 sound() { printf '%s' "$kinds/libplugin_$1.so"; }
@@ -121,11 +132,11 @@ seq 100 >text.so
 refused "there is no such file" --plugin missing.so list
 refused "invalid ELF header" --plugin text.so list
 refused "has no function inextensible_plugin" --plugin "$(ldd "$bench" | awk '/libm\.so/ {print $3}')" list
-abi=$(sed -n 's/^#define INEXTENSIBLE_PLUGIN_ABI //p' installed/include/inextensible/solvers/plugin.h)
-refused "version of the plug-in interface is 999 there, $abi here" --plugin "$kinds/libplugin_another_version.so" list
-refused "alignment (EIGEN_MAX_ALIGN_BYTES) is 128 there, 64 here" --plugin "$kinds/libplugin_another_alignment.so" list
+refused "built for version 999 of the interface, this program has version 1" --plugin "$kinds/libplugin_another_version.so" list
 refused "there is a solver 'shake' already" --plugin "$kinds/libplugin_taken_name.so" list
 refused "no licence for today" --plugin "$kinds/libplugin_throws.so" list
+refused "killed by SIGSEGV" --plugin "$kinds/libplugin_crashes.so" list
+refused "ended with exit code 3" --plugin "$kinds/libplugin_exits.so" list
 refused "there is a solver 'symmetric_sweeps' already" --plugin "$plugin" list --plugin "$plugin"
 refused "there is no such file" --plugin "$plugin" --plugin missing.so "--sweep" strain --out out.json
 
