@@ -158,12 +158,12 @@ inline std::vector<Verb> verbs() {
 struct SceneOptions {
   std::string scene;
   Numbers n;
-  Words set;               // NAME=NUMBER
-  std::string pins, body;  // for a mesh
-  int least_n = 2;         // of --n
+  Words set;                     // NAME=NUMBER
+  std::string pins, body, weld;  // for a mesh
+  int least_n = 2;               // of --n
 
   void declare(const Command& to, const std::string& standard);
-  std::string name() const;                     // with the pins and body of a mesh
+  std::string name() const;                     // with what belongs to a mesh
   SceneParameters given_parameters() const;     // from --set
   SceneParameters complete_parameters() const;  // for a single scene and size
 };

@@ -22,12 +22,16 @@ void SceneOptions::declare(const Command& to, const std::string& standard) {
             Bounds::whole_number(least_n));
   to.repeatable("--set", set, "a parameter of the scene; repeatable", "NAME=NUMBER");
   to.option("--pins", pins,
-            "of mesh:FILE.obj: which vertices are pinned, e.g. 'y > 1.2' or 'y > 1.2 and x < 0'",
+            "of mesh:FILE.obj: which vertices are pinned, e.g. 'y > 1.2 and x <= 0' or 'v1 or "
+            "near(1:2:0)', a vertex of the file and the nearest one",
             "WHERE");
   to.option("--collider", body, "of mesh:FILE.obj: the body, a closed mesh", "FILE.obj");
+  to.option("--weld", weld,
+            "of mesh:FILE.obj: corners this close, in the file's unit, are one vertex; 0: none",
+            "DISTANCE");
 }
 
-std::string SceneOptions::name() const { return with_mesh_parts(scene, pins, body); }
+std::string SceneOptions::name() const { return with_mesh_parts(scene, pins, body, weld); }
 
 SceneParameters SceneOptions::given_parameters() const {
   SceneParameters parameters;

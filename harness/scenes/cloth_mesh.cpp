@@ -40,6 +40,19 @@ double obliqueness(const std::vector<Eigen::Vector3d>& x, const std::array<int, 
   return worst * 180 / std::numbers::pi;
 }
 
+void check_sides(const MeshFile& file, const std::vector<MeshFile::Face>& faces) {
+  std::map<Side, int> faces_at;
+  for (const MeshFile::Face& face : faces) {
+    for (std::size_t k = 0; k < face.corners.size(); ++k) {
+      const Side s = side_of(face.corners, k);
+      if (++faces_at[s] > 2)
+        throw UsageError(file.name(face) + ": the side between vertices " +
+                         std::to_string(s.first + 1) + " and " + std::to_string(s.second + 1) +
+                         " belongs to more than two faces");
+    }
+  }
+}
+
 // Triangles i and j that share the side between their corners, as a quad around it.
 struct Pairing {
   double oblique;
@@ -211,13 +224,15 @@ std::vector<int> pieces_of(const ClothMesh& mesh) {
   join(mesh.quads);
   join(mesh.triangles);
   std::map<int, int> number;
-  std::vector<int> piece(root.size());
+  std::vector<int> piece;
   for (int v = 0; v < static_cast<int>(root.size()); ++v)
-    piece[v] = number.try_emplace(root_of(v), static_cast<int>(number.size())).first->second;
+    piece.push_back(number.try_emplace(root_of(v), static_cast<int>(number.size())).first->second);
   return piece;
 }
 
 ClothMesh cloth_of(const MeshFile& file) {
+  const std::vector<MeshFile::Face> faces = distinct_faces(file);
+  check_sides(file, faces);
   ClothMesh cloth;
   std::vector<int> place(file.vertices.size(), -1);
   const auto vertex = [&](int v) {
@@ -228,7 +243,7 @@ ClothMesh cloth_of(const MeshFile& file) {
     return place[v];
   };
   std::vector<std::array<int, 3>> triangles;
-  for (const auto& [c, line] : distinct_faces(file)) {
+  for (const auto& [c, line] : faces) {
     if (c.size() == 4) {
       cloth.quads.push_back({vertex(c[0]), vertex(c[1]), vertex(c[2]), vertex(c[3])});
       continue;

@@ -22,7 +22,8 @@ struct ClothMesh {
 
 // Quads of a file's faces: triangles are joined to quads where two make one whose angles are within
 // `most_oblique` of right ones, the best first. Faces of more corners are fans of triangles.
-// Vertices that no face has are left out. Throws UsageError for what distinct_faces() refuses.
+// Vertices that no face has are left out. Throws UsageError for what distinct_faces() refuses, and
+// for sides of more than two faces.
 ClothMesh cloth_of(const MeshFile& file);
 
 // The piece that each vertex is of, from 0 on: faces that share a vertex are of one piece.

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <map>
 #include <set>
@@ -15,13 +16,12 @@
 namespace harness {
 namespace {
 
-// Those of the format that say nothing about vertices and faces.
+// Those of the format that say nothing about vertices, faces and lines.
 constexpr std::string_view left_out[] = {
-    "vt",     "vn",     "vp",     "l",          "g",        "o",        "s",   "mg",
-    "usemtl", "mtllib", "usemap", "maplib",     "lod",      "bevel",    "p",   "deg",
-    "bmat",   "step",   "cstype", "curv",       "curv2",    "surf",     "con", "parm",
-    "trim",   "hole",   "scrv",   "sp",         "c_interp", "d_interp", "end", "ctech",
-    "stech",  "call",   "csh",    "shadow_obj", "trace_obj"};
+    "vt",       "vn",       "vp",   "g",     "o",     "s",    "mg",   "usemtl",     "mtllib",
+    "usemap",   "maplib",   "lod",  "bevel", "p",     "deg",  "bmat", "step",       "cstype",
+    "curv",     "curv2",    "surf", "con",   "parm",  "trim", "hole", "scrv",       "sp",
+    "c_interp", "d_interp", "end",  "ctech", "stech", "call", "csh",  "shadow_obj", "trace_obj"};
 
 // "7", "7/1/3", "7//3", "-1": corners count from 1, or backwards from the last vertex so far.
 int corner_of(const std::string& word, std::size_t vertices, const std::string& where) {
@@ -66,6 +66,8 @@ void read_line(std::istringstream words, const std::string& where, int line, Mes
     MeshFile::Face& face = mesh.faces.emplace_back(MeshFile::Face{{}, line});
     while (words >> word) face.corners.push_back(corner_of(word, mesh.vertices.size(), where));
     if (face.corners.size() < 3) throw UsageError(where + ": a face needs three corners or more");
+  } else if (word == "l") {
+    ++mesh.lines;
   } else if (!word.empty() && std::ranges::find(left_out, word) == std::end(left_out)) {
     throw UsageError(where + ": '" + shortened(word) + "' is no keyword of an OBJ file");
   }
@@ -94,10 +96,32 @@ MeshFile read_mesh_file(const std::string& path) {
   return mesh;
 }
 
+void weld(MeshFile& file, double distance) {
+  using Cell = std::array<long, 3>;
+  std::map<Cell, std::vector<int>> in_cell;
+  const auto cell_of = [&](const Eigen::Vector3d& x) {
+    return Cell{std::lround(x.x() / distance), std::lround(x.y() / distance),
+                std::lround(x.z() / distance)};
+  };
+  std::vector<int> first(file.vertices.size());
+  for (std::size_t v = 0; v < first.size(); ++v) {
+    const Cell at = cell_of(file.vertices[v]);
+    first[v] = static_cast<int>(v);
+    for (int k = 0; k < 27 && first[v] == static_cast<int>(v); ++k) {
+      const auto near = in_cell.find({at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1, at[2] + k / 9 - 1});
+      if (near == in_cell.end()) continue;
+      for (const int other : near->second)
+        if ((file.vertices[other] - file.vertices[v]).norm() <= distance) first[v] = other;
+    }
+    if (first[v] == static_cast<int>(v)) in_cell[at].push_back(first[v]);
+  }
+  for (MeshFile::Face& face : file.faces)
+    for (int& corner : face.corners) corner = first[corner];
+}
+
 std::vector<MeshFile::Face> distinct_faces(const MeshFile& file) {
   std::vector<MeshFile::Face> faces;
   std::set<std::set<int>> known;
-  std::map<std::pair<int, int>, int> faces_at;
   const auto number = [](int vertex) { return std::to_string(vertex + 1); };
   for (const MeshFile::Face& face : file.faces) {
     const std::size_t n = face.corners.size();
@@ -121,14 +145,7 @@ std::vector<MeshFile::Face> distinct_faces(const MeshFile& file) {
       throw UsageError(file.name(face) + ": it crosses itself, its corners are not in turn");
     if (!(area.norm() > 1e-9 * longest * longest))
       throw UsageError(file.name(face) + ": it has no area, its corners lie on one line");
-    if (!known.emplace(face.corners.begin(), face.corners.end()).second) continue;
-    for (std::size_t k = 0; k < n; ++k) {
-      const int a = face.corners[k], b = face.corners[(k + 1) % n];
-      if (++faces_at[std::minmax(a, b)] > 2)
-        throw UsageError(file.name(face) + ": the side between vertices " + number(std::min(a, b)) +
-                         " and " + number(std::max(a, b)) + " belongs to more than two faces");
-    }
-    faces.push_back(face);
+    if (known.emplace(face.corners.begin(), face.corners.end()).second) faces.push_back(face);
   }
   return faces;
 }

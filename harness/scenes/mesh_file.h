@@ -15,19 +15,23 @@ struct MeshFile {
   std::string path;
   std::vector<Eigen::Vector3d> vertices;  // in the file's unit
   std::vector<Face> faces;                // in the order of the file
+  int lines = 0;                          // elements "l", which are left out
 
   // "'m.obj', face 12 (line 80)", as the file counts.
   std::string name(const Face& face) const;
 };
 
-// Vertices and faces. A byte order mark, comments after the data and lines continued by a
-// backslash are read as such; lines, curves, materials and groups are left out. Throws UsageError,
-// naming file and line, for other keywords, bad numbers, corners without a vertex, and no face.
+// Vertices, faces and lines. A byte order mark, comments after the data and lines continued by a
+// backslash are read as such; texture coordinates, materials, curves and groups are left out.
+// Throws UsageError, naming file and line, for any other keyword, numbers that are none, corners
+// without a vertex, and files without a face.
 MeshFile read_mesh_file(const std::string& path);
 
+// Corners closer than `distance` (in the file's unit) become one vertex, the first of them.
+void weld(MeshFile& file, double distance);
+
 // Faces without those that have the corners of an earlier one. Throws UsageError, naming the face,
-// for corners in one place or on one line, quads that cross themselves, and sides of more than two
-// faces.
+// for corners in one place or on one line, and for quads that cross themselves.
 std::vector<MeshFile::Face> distinct_faces(const MeshFile& file);
 
 }  // namespace harness

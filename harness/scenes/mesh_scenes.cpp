@@ -5,6 +5,9 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <map>
+#include <numeric>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -20,134 +23,240 @@ namespace {
 
 constexpr std::string_view prefix = "mesh:";
 
-// "y > 1.2": which coordinate, and where.
-struct Comparison {
-  int axis;
-  bool above;
-  double value;
-  bool holds(const Eigen::Vector3d& x) const { return above ? x[axis] > value : x[axis] < value; }
-};
-
 std::string without_spaces(std::string text) {
   std::erase_if(text, [](unsigned char c) { return std::isspace(c) != 0; });
   return text;
 }
 
-// "y>1.2andx<0".
-std::vector<Comparison> read_pins(const std::string& text) {
-  std::vector<Comparison> all;
-  std::size_t begin = 0;
-  while (begin <= text.size()) {
-    const std::size_t end = std::min(text.find("and", begin), text.size());
-    const std::string part = text.substr(begin, end - begin);
-    char axis = 0, relation = 0;
-    double value = 0;
-    int read = 0;
-    if (std::sscanf(part.c_str(), "%c%c%lf%n", &axis, &relation, &value, &read) != 3 ||
-        read != static_cast<int>(part.size()) || axis < 'x' || axis > 'z' ||
-        (relation != '>' && relation != '<'))
-      throw UsageError("pins are '" + text +
-                       "', must be like y>1.2, or several such joined by 'and'");
-    all.push_back({axis - 'x', relation == '>', value});
-    begin = end + 3;
+std::vector<std::string> split(const std::string& text, const std::string& word) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(word, begin), text.size());
+    parts.push_back(text.substr(begin, end - begin));
+    begin = end + word.size();
   }
-  return all;
+  return parts;
+}
+
+// One condition on a vertex, in the file's unit: "y>1.2", "x<=0"; "v12" and "near(0:1:0)" are one
+// vertex, by its number in the file or as the nearest one.
+using Condition = std::function<bool(const Eigen::Vector3d&)>;
+
+Condition read_condition(const std::string& text, const MeshFile& file) {
+  char axis = 0, relation = 0;
+  int read = 0;
+  long number = 0;
+  const auto all_read = [&] { return read == static_cast<int>(text.size()); };
+  if (Eigen::Vector3d p;
+      std::sscanf(text.c_str(), "near(%lf:%lf:%lf)%n", &p.x(), &p.y(), &p.z(), &read) == 3 &&
+      all_read()) {
+    const auto nearest = std::ranges::min_element(
+        file.vertices, {}, [&](const Eigen::Vector3d& v) { return (v - p).norm(); });
+    return [at = *nearest](const Eigen::Vector3d& x) { return x == at; };
+  }
+  if (std::sscanf(text.c_str(), "v%ld%n", &number, &read) == 1 && all_read()) {
+    if (number < 1 || number > std::ssize(file.vertices))
+      throw UsageError("pins: '" + file.path + "' has no vertex " + std::to_string(number));
+    return [at = file.vertices[number - 1]](const Eigen::Vector3d& x) { return x == at; };
+  }
+  double value = 0;
+  for (const char* form : {"%c%c=%lf%n", "%c%c%lf%n"}) {
+    if (std::sscanf(text.c_str(), form, &axis, &relation, &value, &read) != 3 || !all_read() ||
+        axis < 'x' || axis > 'z' || (relation != '>' && relation != '<'))
+      continue;
+    const double sign = relation == '>' ? 1 : -1;
+    const bool equal = form[4] == '=';
+    return [=, i = axis - 'x'](const Eigen::Vector3d& x) {
+      return equal ? sign * x[i] >= sign * value : sign * x[i] > sign * value;
+    };
+  }
+  throw UsageError("pins are '" + shortened(text) +
+                   "', must be like y>1.2, x<=0, v12 (a vertex of the file) or near(0:1:0), joined "
+                   "by 'and' and 'or'");
+}
+
+// "y>1.2andx<0orv3": 'and' binds closer.
+Condition read_pins(const std::string& text, const MeshFile& file) {
+  std::vector<std::vector<Condition>> any;
+  for (const std::string& part : split(text, "or")) {
+    std::vector<Condition>& all = any.emplace_back();
+    for (const std::string& one : split(part, "and")) all.push_back(read_condition(one, file));
+  }
+  return [any](const Eigen::Vector3d& x) {
+    return std::ranges::any_of(any, [&](const std::vector<Condition>& all) {
+      return std::ranges::all_of(all, [&](const Condition& one) { return one(x); });
+    });
+  };
 }
 
 // The files, read once for the scenes of all parameters.
 struct MeshModel {
   std::string identity;
-  std::vector<Comparison> pins;
+  Condition pinned;  // empty: nothing is
   ClothMesh cloth;
   inextensible::TriangleMesh body;
-
-  bool pinned(const Eigen::Vector3d& x) const {
-    return !pins.empty() &&
-           std::ranges::all_of(pins, [&](const Comparison& one) { return one.holds(x); });
-  }
 };
 
+ClothMesh with_pins(const MeshModel& model, ClothMesh cloth) {
+  for (const Eigen::Vector3d& v : cloth.vertices)
+    cloth.held.push_back(model.pinned && model.pinned(v));
+  return cloth;
+}
+
+// The triangles of a closed surface, counter-clockwise seen from outside: those that are turned
+// against their neighbours are turned. Throws UsageError where a side has not two faces.
 inextensible::TriangleMesh body_of(const MeshFile& file) {
-  inextensible::TriangleMesh body;
-  body.vertices = file.vertices;
+  inextensible::TriangleMesh body{file.vertices, {}};
   for (const auto& [corners, line] : distinct_faces(file)) {
     for (std::size_t k = 1; k + 1 < corners.size(); ++k)
       body.triangles.push_back({corners[0], corners[k], corners[k + 1]});
   }
-  double volume = 0;  // negative: faces are the wrong way round
-  for (const auto& [a, b, c] : body.triangles)
-    volume += body.vertices[a].dot(body.vertices[b].cross(body.vertices[c])) / 6;
-  if (volume < 0) {
-    for (auto& [a, b, c] : body.triangles) std::swap(b, c);
+  std::map<std::pair<int, int>, std::vector<std::size_t>> at_side;
+  const auto side = [&](std::size_t t, std::size_t k) {
+    const auto& corners = body.triangles[t];
+    return std::pair{corners[k], corners[(k + 1) % 3]};
+  };
+  const auto undirected = [](std::pair<int, int> s) -> std::pair<int, int> {
+    return std::minmax(s.first, s.second);
+  };
+  for (std::size_t t = 0; t < body.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) at_side[undirected(side(t, k))].push_back(t);
+  for (const auto& [s, faces] : at_side) {
+    if (faces.size() == 2) continue;
+    throw UsageError(
+        "'" + file.path + "' is not a body to collide with: the side between vertices " +
+        std::to_string(s.first + 1) + " and " + std::to_string(s.second + 1) + " has " +
+        std::to_string(faces.size()) +
+        (faces.size() == 1 ? " face, a closed surface has 2; if corners are doubled, --weld 1e-6"
+                           : " faces, a closed surface has 2"));
+  }
+  std::vector<char> known(body.triangles.size(), 0);
+  for (std::size_t seed = 0; seed < known.size(); ++seed) {
+    if (known[seed]) continue;
+    std::vector<std::size_t> piece{seed};
+    known[seed] = 1;
+    double volume = 0;  // negative: faces are the wrong way round
+    for (std::size_t i = 0; i < piece.size(); ++i) {
+      const auto [a, b, c] = body.triangles[piece[i]];
+      volume += body.vertices[a].dot(body.vertices[b].cross(body.vertices[c]));
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto here = side(piece[i], k);
+        for (const std::size_t t : at_side[undirected(here)]) {
+          if (known[t]) continue;
+          known[t] = 1;
+          piece.push_back(t);
+          for (std::size_t other = 0; other < 3; ++other) {
+            if (side(t, other) != here) continue;  // both run along it the same way
+            std::swap(body.triangles[t][0], body.triangles[t][1]);
+            break;
+          }
+        }
+      }
+    }
+    for (const std::size_t t : piece)
+      if (volume < 0) std::swap(body.triangles[t][0], body.triangles[t][1]);
   }
   return body;
 }
 
-ClothMesh with_pins(const MeshModel& model, ClothMesh cloth) {
-  for (const Eigen::Vector3d& v : cloth.vertices) cloth.held.push_back(model.pinned(v));
-  return cloth;
+// Throws UsageError for cloth that falls apart or cannot move.
+void check_cloth(const std::string& path, MeshFile file, const ClothMesh& cloth, bool has_body,
+                 bool welded) {
+  const int constraints = count_cloth(cloth).second;
+  if (std::ranges::all_of(cloth.held, std::identity{}))
+    throw UsageError("'" + path + "': all vertices are pinned, nothing can move");
+  if (constraints == 0)
+    throw UsageError("'" + path + "': no side of its " +
+                     std::to_string(cloth.quads.size() + cloth.triangles.size()) +
+                     " faces is constrained, since triangles that make no quads are springs: there "
+                     "is nothing to compare");
+  const std::vector<int> piece = pieces_of(cloth);
+  const int pieces = 1 + *std::ranges::max_element(piece);
+  std::set<int> held;
+  for (std::size_t v = 0; v < piece.size(); ++v)
+    if (cloth.held[v]) held.insert(piece[v]);
+  const int loose = pieces - static_cast<int>(held.size());
+  if (pieces == 1 || (has_body && welded) || loose == 0) return;
+  const Eigen::AlignedBox3d box = std::accumulate(
+      cloth.vertices.begin(), cloth.vertices.end(), Eigen::AlignedBox3d{},
+      [](Eigen::AlignedBox3d all, const Eigen::Vector3d& v) { return all.extend(v); });
+  weld(file, 1e-6 * box.diagonal().norm());
+  const std::vector<int> joined = pieces_of(cloth_of(file));
+  const bool doubled = *std::ranges::max_element(joined) + 1 < pieces;
+  if (has_body && !doubled) return;
+  throw UsageError("'" + path + "' is in " + std::to_string(pieces) + " pieces, " +
+                   std::to_string(loose) + " of them pinned nowhere" +
+                   (doubled ? "; corners lie on each other: --weld 1e-6 joins them" +
+                                  std::string(has_body ? ", --weld 0 leaves them apart" : "")
+                            : ""));
 }
 
-// Throws UsageError for cloth that falls apart or cannot move.
-void check_cloth(const std::string& file, const ClothMesh& cloth, bool has_body) {
-  if (std::ranges::all_of(cloth.held, std::identity{}))
-    throw UsageError("'" + file + "': all vertices are pinned, nothing can move");
-  const std::vector<int> piece = pieces_of(cloth);
-  std::set<int> pieces, held;
-  for (std::size_t v = 0; v < piece.size(); ++v) {
-    pieces.insert(piece[v]);
-    if (cloth.held[v]) held.insert(piece[v]);
+void check_start(const std::string& path, const ClothMesh& cloth,
+                 const inextensible::TriangleCollider& body) {
+  int inside = 0;
+  double deepest = 0;
+  for (const Eigen::Vector3d& v : cloth.vertices) {
+    const double height = body.nearest(v).signed_distance;
+    if (!(height < -1e-9 * v.norm())) continue;
+    ++inside;
+    deepest = std::min(deepest, height);
   }
-  if (!has_body && held.size() < pieces.size())
-    throw UsageError("'" + file + "' is in " + std::to_string(pieces.size()) + " pieces, " +
-                     std::to_string(pieces.size() - held.size()) +
-                     " of them pinned nowhere: join corners that lie on each other, or pin every "
-                     "piece");
-  if (count_cloth(cloth).second == 0)
-    throw UsageError("'" + file + "': no side of its " +
-                     std::to_string(cloth.quads.size() + cloth.triangles.size()) +
-                     " faces is constrained, as triangles that make no quads are springs: there is "
-                     "nothing to compare");
+  if (inside > 0)
+    throw UsageError("'" + path + "': " + std::to_string(inside) + " of " +
+                     std::to_string(cloth.vertices.size()) +
+                     " vertices begin inside the body, as deep as " + number_text(-deepest, 3) +
+                     " of the file's units");
 }
 
 std::shared_ptr<const MeshModel> read_model(const std::string& name) {
   auto model = std::make_shared<MeshModel>();
-  std::string file, body;
+  std::string path, body, pins;
+  std::optional<double> welded;
   std::istringstream words(name.substr(prefix.size()));
-  std::getline(words, file, ',');
+  std::getline(words, path, ',');
+  std::string content = read_file(path, "mesh");
   for (std::string word; std::getline(words, word, ',');) {
     if (word.starts_with("pins=")) {
-      model->pins = read_pins(without_spaces(word.substr(5)));
+      pins = without_spaces(word.substr(5));
     } else if (word.starts_with("body=")) {
       body = word.substr(5);
+      content += read_file(body, "mesh");
+      continue;
+    } else if (double distance = 0; std::sscanf(word.c_str(), "weld=%lf", &distance) == 1) {
+      if (!(distance >= 0 && distance < 1e6))
+        throw UsageError("--weld is " + word.substr(5) + ", must be a distance of at least 0");
+      welded = distance;
     } else {
       throw UsageError("scene '" + name + "': '" + word +
-                       "' must be pins=... or body=..., as in mesh:shirt.obj,pins=y>1.2");
+                       "' must be pins=..., weld=... or body=..., as in mesh:shirt.obj,pins=y>1.2");
     }
+    content += word;
   }
-  std::string content = name.substr(std::min(name.find(",pins="), name.size()));
-  content.erase(std::min(content.find(",body="), content.size()));
-  content = read_file(file, "mesh") + content;
-  if (!body.empty()) content += read_file(body, "mesh");
   model->identity = fnv1a(content);
-  model->cloth = cloth_of(read_mesh_file(file));
-  if (!body.empty()) {
-    model->body = body_of(read_mesh_file(body));
-    try {
-      (void)inextensible::TriangleCollider(model->body, 0);
-    } catch (const std::invalid_argument& error) {
-      throw UsageError("'" + body + "' is not a body to collide with: " + error.what());
-    }
-  }
+  const auto read = [&](const std::string& file) {
+    MeshFile mesh = read_mesh_file(file);
+    if (welded.value_or(0) > 0) weld(mesh, *welded);
+    return mesh;
+  };
+  const MeshFile file = read(path);
+  model->cloth = cloth_of(file);
+  if (!pins.empty()) model->pinned = read_pins(pins, file);
   const ClothMesh cloth = with_pins(*model, model->cloth);
   const bool holds = std::ranges::any_of(cloth.held, std::identity{});
-  if (!model->pins.empty() && !holds)
+  if (!pins.empty() && !holds)
     throw UsageError("scene '" + name + "': no vertex is where the pins are");
   if (!holds && body.empty())
     throw UsageError(
         "scene '" + name +
         "': nothing is pinned and nothing is below; add --pins 'y > ...' or --collider FILE");
-  check_cloth(file, cloth, !body.empty());
+  check_cloth(path, file, cloth, !body.empty(), welded.has_value());
+  if (body.empty()) return model;
+  model->body = body_of(read(body));
+  try {
+    check_start(path, model->cloth, inextensible::TriangleCollider(model->body, 0));
+  } catch (const std::invalid_argument& error) {
+    throw UsageError("'" + body + "' is not a body to collide with: " + error.what());
+  }
   return model;
 }
 
@@ -182,17 +291,17 @@ Scene build_mesh(const MeshModel& model, const SceneParameters& p) {
 bool names_mesh(std::string_view scene) { return scene.starts_with(prefix); }
 
 std::string with_mesh_parts(const std::string& scene, const std::string& pins,
-                            const std::string& body) {
-  if (pins.empty() && body.empty()) return scene;
+                            const std::string& body, const std::string& weld) {
+  if (pins.empty() && body.empty() && weld.empty()) return scene;
   if (!names_mesh(scene))
-    throw UsageError("--pins and --collider go with --scene mesh:FILE.obj, not with '" + scene +
-                     "'");
-  for (const std::string& part : {pins, body}) {
+    throw UsageError("--pins, --collider and --weld go with --scene mesh:FILE.obj, not with '" +
+                     scene + "'");
+  for (const std::string& part : {pins, body, weld}) {
     if (part.find(',') != std::string::npos)
       throw UsageError("'" + part + "': a comma cannot stand in pins or a file's name here");
   }
   return scene + (pins.empty() ? "" : ",pins=" + without_spaces(pins)) +
-         (body.empty() ? "" : ",body=" + body);
+         (body.empty() ? "" : ",body=" + body) + (weld.empty() ? "" : ",weld=" + weld);
 }
 
 SceneType mesh_scene(const std::string& name) {

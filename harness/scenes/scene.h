@@ -92,14 +92,15 @@ Scene built_scene(std::string_view name, const SceneParameters& given = {});
 //
 // Warp and weft are the sides of quads. Two triangles that make a good quad are taken as one;
 // springs alone hold the remaining triangles, as a net of inextensible triangles would not bend. A
-// body is a closed mesh.
+// body is a closed mesh. Pins are conditions joined by "and" and "or": "y > 1.2", "x <= 0", "v12"
+// (a vertex of the file) and "near(0:1:0)" (the nearest one).
 
 bool names_mesh(std::string_view scene);  // "mesh:..."
 
-// The scene's name with pins ("y > 1.2", several joined by "and"; in the file's unit) and a body.
-// Throws UsageError where one is given and the scene is not a mesh.
+// The scene's name with pins, a body, and the distance within which corners are one, in the file's
+// unit. Throws UsageError where one is given and the scene is not a mesh.
 std::string with_mesh_parts(const std::string& scene, const std::string& pins,
-                            const std::string& body);
+                            const std::string& body, const std::string& weld = "");
 
 // Reads the files. Throws UsageError, naming file and place, for what can be no cloth.
 SceneType mesh_scene(const std::string& name);

@@ -115,7 +115,7 @@ TEST(MeshScene, TrianglesThatMakeNoQuadsHoldWithSprings) {
     text << "v " << std::cos(2 * k * std::numbers::pi / 3) << " 0 "
          << std::sin(2 * k * std::numbers::pi / 3) << '\n';
   text << "v 2 0 0\nv 2 0 1\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 5 6 3\n";
-  const std::string name = "mesh:" + file_with("three.obj", text.str()) + ",pins=x>1.9andz<0.1";
+  const std::string name = "mesh:" + file_with("three.obj", text.str()) + ",pins=v5";
   for (const int n : {1, 2, 5}) {
     const Scene mesh = built_scene(name, {{"n", n}});
     const int vertices = 1 + 3 * n * (n + 1) / 2, triangles = 3 * n * n;
@@ -161,9 +161,70 @@ TEST(MeshScene, IsWhatItsExporterMeans) {
               joined_places(expected, expected.problem->edges()))
         << text;
   }
-  const std::string six = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 0 1 0\nf 2 3 4 5 6 1\n";
-  EXPECT_EQ(
-      built_scene("mesh:" + file_with("six.obj", six) + ",pins=x<0.5andy<0.5").triangles.size(), 4);
+  const Scene fan = built_scene("mesh:" +
+                                file_with("fan.obj",
+                                          "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 0 1 0\n"
+                                          "f 2 3 4 5 6 1\n") +
+                                ",pins=v1");
+  EXPECT_EQ(fan.triangles.size(), 4) << "a face of six corners";
+}
+
+TEST(MeshScene, PinsAreConditionsJoinedByAndAndOr) {
+  const std::string name = "mesh:" + file_with("pins.obj", square(5)) + ",pins=";
+  for (const auto& [pins, count] :
+       std::initializer_list<std::pair<const char*, int>>{{"y>-0.01", 5},
+                                                          {"y>=0", 5},
+                                                          {"y>0orx>=1", 5},
+                                                          {"y>=0andx>=1", 1},
+                                                          {"near(-3:2:0)ornear(3:2:0)", 2},
+                                                          {"v1orv5ory<=-1", 7},
+                                                          {"y>=0andx<0.1orv13", 2}}) {
+    EXPECT_EQ(built_scene(name + pins).problem->pinned().size(), count) << pins;
+    EXPECT_EQ(built_scene(name + pins, {{"n", 2}}).problem->pinned().size() > 2, count > 2);
+  }
+}
+
+// Every face with corners of its own, as surfaces are exported for printing.
+TEST(MeshScene, InPiecesIsRefusedUntilItIsWelded) {
+  const std::string plain = file_with("whole.obj", square(3));
+  const std::string soup = file_with(
+      "soup.obj",
+      "v 0 0 0\nv .5 0 0\nv .5 -.5 0\nv 0 -.5 0\nv .5 0 0\nv 1 0 0\nv 1 -.5 0\nv .5 -.5 1e-9\n"
+      "v 0 -.5 0\nv .5 -.5 0\nv .5 -1 0\nv 0 -1 0\nv .5 -.5 0\nv 1 -.5 0\nv 1 -1 0\nv .5 -1 0\n"
+      "f 1 2 3 4\nf 5 6 7 8\nf 9 10 11 12\nf 13 14 15 16\n");
+  const std::string said = refusal_of([&] { (void)find_scene("mesh:" + soup + ",pins=y>=0"); });
+  EXPECT_NE(said.find("in 4 pieces, 2 of them pinned nowhere"), std::string::npos) << said;
+  EXPECT_NE(said.find("--weld 1e-6"), std::string::npos) << said;
+  const Scene whole = built_scene("mesh:" + plain + ",pins=y>=0"),
+              welded = built_scene("mesh:" + soup + ",pins=y>=0,weld=1e-6");
+  EXPECT_EQ(joined_places(whole, whole.problem->edges()),
+            joined_places(welded, welded.problem->edges()));
+}
+
+TEST(MeshScene, BodiesAreTurnedWeldedAndOutsideTheCloth) {
+  const std::string corners =
+      "v -1 -3 -1\nv 2 -3 -1\nv 2 -3 1\nv -1 -3 1\nv -1 -2 -1\nv 2 -2 -1\nv 2 -2 1\nv -1 -2 1\n";
+  const std::string sheet = "mesh:" + file_with("above.obj", square(4)) + ",body=";
+  const auto top = [&](const std::string& faces) {
+    const Scene mesh = built_scene(sheet + file_with("body.obj", corners + faces));
+    inextensible::ContactPlane plane{};
+    inextensible::WorkCounters work;
+    EXPECT_TRUE(mesh.problem->collider()->plane_at({0.3, -2.01, 0.1}, plane, work)) << faces;
+    return plane.normal;
+  };
+  const std::string sides = "f 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n";
+  for (const char* ends :
+       {"f 1 2 3 4\nf 8 7 6 5\n", "f 4 3 2 1\nf 8 7 6 5\n", "f 1 2 3 4\nf 5 6 7 8\n"})
+    EXPECT_LT((top(sides + ends) - Eigen::Vector3d(0, 1, 0)).norm(), 1e-12) << ends;
+  const auto refused = [&](const std::string& text) {
+    return refusal_of([&] { (void)find_scene(sheet + file_with("body.obj", text)); });
+  };
+  EXPECT_NE(refused(corners + sides).find("vertices 1 and 2 has 1 face"), std::string::npos);
+  const std::string inside = refused(std::regex_replace(corners, std::regex("-2"), "-.4") + sides +
+                                     "f 1 2 3 4\nf 8 7 6 5\n");
+  EXPECT_NE(inside.find("8 of 16 vertices begin inside the body, as deep as 0.6"),
+            std::string::npos)
+      << inside;
 }
 
 TEST(MeshScene, WhatCanBeNoClothIsRefusedInALine) {
@@ -176,13 +237,15 @@ TEST(MeshScene, WhatCanBeNoClothIsRefusedInALine) {
       {"mesh:" + good + ",pins=y>5", "no vertex is where the pins are"},
       {"mesh:" + good + ",pins=height>1", "must be like y>1.2"},
       {"mesh:" + good + ",pins=y>", "must be like y>1.2"},
-      {"mesh:" + good + ",colour=red", "must be pins=... or body=..."},
+      {"mesh:" + good + ",colour=red", "must be pins=..., weld=... or body=..."},
       {"mesh:" + good + ",body=" + good, "not a body to collide with"},
       {"mesh:nowhere.obj,pins=y>0", "nowhere.obj"},
       {"mesh:" + file_with("empty.obj", "# nothing\n") + ",pins=y>0", "no faces"},
       {"mesh:" + file_with("short.obj", "v 1 2\n") + ",pins=y>0", "line 1: a vertex needs three"},
       {"mesh:" + file_with("beyond.obj", two + "f 1 2 9\n") + ",pins=y>0", "line 5: no vertex 9"},
+      {"mesh:" + good + ",pins=v10", "has no vertex 10"},
       {"mesh:" + good + ",pins=y<9", "all vertices are pinned"},
+      {"mesh:" + good + ",weld=-1", "must be a distance of at least 0"},
       {"mesh:" + file_with("word.obj", two + "vx 1\nf 1 2 3 4\n") + ",pins=y>0",
        "line 5: 'vx' is no keyword"},
       {"mesh:" + file_with("flat.obj", two + "v 0 0 0\n\nf 1 2 3 4\nf 1 5 3\n") + ",pins=y>0",
@@ -190,12 +253,7 @@ TEST(MeshScene, WhatCanBeNoClothIsRefusedInALine) {
       {"mesh:" + file_with("line.obj", two + "v 0 2 0\nf 1 2 3 4\nf 1 4 5\n") + ",pins=y>0",
        "face 2 (line 7): it has no area"},
       {"mesh:" + file_with("bowtie.obj", two + "f 1 2 4 3\n") + ",pins=y>0", "it crosses itself"},
-      {"mesh:" +
-           file_with("apart.obj",
-                     two + "v 5 0 0\nv 6 0 0\nv 6 1 0\nv 5 1 0\nf 1 2 3 4\nf 5 6 7 8\n") +
-           ",pins=x<0.5",
-       "in 2 pieces, 1 of them pinned nowhere"},
-      {"mesh:" + file_with("one.obj", two + "f 1 2 3\n") + ",pins=x<0.5", "is constrained"},
+      {"mesh:" + file_with("one.obj", two + "f 1 2 3\n") + ",pins=v1", "is constrained"},
       {"mesh:" + file_with("fan.obj", two + "v 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 2 5\n") + ",pins=y>0",
        "between vertices 1 and 2 belongs to more than two faces"},
   };
