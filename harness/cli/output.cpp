@@ -44,6 +44,7 @@ json identity(const json& context, const json& suite) {
           {"compiler flags", build.at("flags")},
           {"program", build.value("binary", build.at("git").get<std::string>())},
           {"libraries", context.at("libraries")},
+          {"plug-ins", context.value("plugins", json::array())},
           {"suite", suite},
           {"selection", context.value("selection", json::object())}};
 }

@@ -12,7 +12,9 @@
 
 #include "harness/base/child_process.h"
 #include "harness/base/errors.h"
+#include "harness/base/files.h"
 #include "harness/base/pattern.h"
+#include "harness/base/text.h"
 #include "solvers/c_method.h"
 #include "solvers/registry.h"
 
@@ -88,8 +90,11 @@ Plugin add(const std::string& path) {
   const InextensiblePlugin& table = table_of(path);
   std::fesetenv(&numbers);
   std::setlocale(LC_ALL, locale.c_str());
-  Plugin plugin{
-      std::filesystem::path(path).filename().string(), table.version, {}, table.optimized != 0};
+  Plugin plugin{std::filesystem::path(path).filename().string(),
+                table.version,
+                fnv1a(read_file(path, "plug-in")),
+                {},
+                table.optimized != 0};
   std::vector<inextensible::Backend> rows;
   for (InextensibleMethod& method : adopted(table.methods, table.method_count, table.method_size)) {
     method.settings =

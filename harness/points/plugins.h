@@ -10,10 +10,11 @@ namespace harness {
 struct Plugin {
   std::string file;     // name without its folder
   std::string version;  // the plug-in's own
+  std::string hash;     // of the file
   std::vector<std::string> solvers;
   bool optimized = false;  // by the compiler; if not, its times say nothing
 };
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Plugin, file, version, solvers, optimized)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Plugin, file, version, hash, solvers, optimized)
 
 // Adds the file's methods to the registry; at program start. A child loads it first, so that one
 // that crashes or ends the program is refused. Locale and floating-point environment stay as they

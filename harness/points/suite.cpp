@@ -54,6 +54,7 @@ SweepSpec read_sweep(const json& object, const std::string& where, const Tuned* 
   object.at("sweep").get_to(spec.sweep);
   object.at("scene").get_to(spec.scene);
   const auto type = checked_scene(spec.scene, where);
+  spec.scene = type->name;  // of a mesh: with its content
   read_limits(object, where, spec);
   const json steps = object.value("steps", json::object());
   read_steps(steps, where, spec);

@@ -91,8 +91,8 @@ Condition read_pins(const std::string& text, const MeshFile& file) {
 
 // The files, read once for the scenes of all parameters.
 struct MeshModel {
-  std::string identity;
-  Condition pinned;  // empty: nothing is
+  std::string name, identity;  // name: with the hash of all that the scene is made of
+  Condition pinned;            // empty: nothing is
   ClothMesh cloth;
   inextensible::TriangleMesh body;
 };
@@ -210,7 +210,7 @@ void check_start(const std::string& path, const ClothMesh& cloth,
 
 std::shared_ptr<const MeshModel> read_model(const std::string& name) {
   auto model = std::make_shared<MeshModel>();
-  std::string path, body, pins;
+  std::string path, body, pins, expected;
   std::optional<double> welded;
   std::istringstream words(name.substr(prefix.size()));
   std::getline(words, path, ',');
@@ -221,6 +221,9 @@ std::shared_ptr<const MeshModel> read_model(const std::string& name) {
     } else if (word.starts_with("body=")) {
       body = word.substr(5);
       content += read_file(body, "mesh");
+      continue;
+    } else if (word.starts_with("content=")) {
+      expected = word.substr(8);
       continue;
     } else if (double distance = 0; std::sscanf(word.c_str(), "weld=%lf", &distance) == 1) {
       if (!(distance >= 0 && distance < 1e6))
@@ -233,6 +236,10 @@ std::shared_ptr<const MeshModel> read_model(const std::string& name) {
     content += word;
   }
   model->identity = fnv1a(content);
+  if (!expected.empty() && expected != model->identity)
+    throw UsageError("'" + path + "' has changed: the scene's files and pins have the hash " +
+                     expected + ", these have " + model->identity);
+  model->name = name + (expected.empty() ? ",content=" + model->identity : "");
   const auto read = [&](const std::string& file) {
     MeshFile mesh = read_mesh_file(file);
     if (welded.value_or(0) > 0) weld(mesh, *welded);
@@ -292,21 +299,25 @@ bool names_mesh(std::string_view scene) { return scene.starts_with(prefix); }
 
 std::string with_mesh_parts(const std::string& scene, const std::string& pins,
                             const std::string& body, const std::string& weld) {
-  if (pins.empty() && body.empty() && weld.empty()) return scene;
-  if (!names_mesh(scene))
+  const bool given = !(pins.empty() && body.empty() && weld.empty());
+  if (!names_mesh(scene)) {
+    if (!given) return scene;
     throw UsageError("--pins, --collider and --weld go with --scene mesh:FILE.obj, not with '" +
                      scene + "'");
+  }
   for (const std::string& part : {pins, body, weld}) {
     if (part.find(',') != std::string::npos)
       throw UsageError("'" + part + "': a comma cannot stand in pins or a file's name here");
   }
-  return scene + (pins.empty() ? "" : ",pins=" + without_spaces(pins)) +
-         (body.empty() ? "" : ",body=" + body) + (weld.empty() ? "" : ",weld=" + weld);
+  const std::string name = scene + (pins.empty() ? "" : ",pins=" + without_spaces(pins)) +
+                           (body.empty() ? "" : ",body=" + body) +
+                           (weld.empty() ? "" : ",weld=" + weld);
+  return read_model(name)->name;
 }
 
 SceneType mesh_scene(const std::string& name) {
   const std::shared_ptr<const MeshModel> model = read_model(name);
-  return {.name = name,
+  return {.name = model->name,
           .summary = "cloth of your own",
           .parameters = with_cloth_parameters(
               {{"n", 1, "parts that each side of the file's faces is cut into", 1, 64, true},

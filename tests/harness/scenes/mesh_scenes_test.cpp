@@ -261,9 +261,19 @@ TEST(MeshScene, WhatCanBeNoClothIsRefusedInALine) {
     const std::string said = refusal_of([&name = scene] { (void)find_scene(name); });
     EXPECT_NE(said.find(part), std::string::npos) << scene << ": " << said;
   }
-  EXPECT_EQ(with_mesh_parts("mesh:a.obj", "y > 1.2 and x < 0", "b.obj"),
-            "mesh:a.obj,pins=y>1.2andx<0,body=b.obj");
   EXPECT_THROW((void)with_mesh_parts("drape", "y > 1", ""), UsageError);
+}
+
+// What is measured of one mesh is not taken for another of the same name.
+TEST(MeshScene, IsItsContent) {
+  const std::string file = file_with("changes.obj", square(3));
+  const std::string before = with_mesh_parts("mesh:" + file, "y >= 0 and x < .1", "");
+  EXPECT_EQ(find_scene(before)->name, before);
+  EXPECT_TRUE(before.starts_with("mesh:" + file + ",pins=y>=0andx<.1,content=")) << before;
+  file_with("changes.obj", square(4));
+  EXPECT_NE(with_mesh_parts("mesh:" + file, "y >= 0 and x < .1", ""), before);
+  const std::string said = refusal_of([&] { (void)find_scene(before); });
+  EXPECT_NE(said.find("has changed"), std::string::npos) << said;
 }
 
 }  // namespace
