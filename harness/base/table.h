@@ -17,11 +17,23 @@ struct Table {
   std::size_t names = 1;  // this many of the first columns hold names, which Markdown sets as code
 };
 
+// No text of a cell ends the cell or its code, or begins a tag.
 inline void print_markdown(std::ostream& out, const Table& table) {
-  const auto print_row = [&out](const std::vector<std::string>& cells, std::size_t names) {
+  const auto cell = [](const std::string& text, bool code) {
+    std::string result;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      const bool tag =
+          text[i] == '<' && i + 1 < text.size() && text[i + 1] != '=' && text[i + 1] != ' ';
+      result += text[i] == '|'           ? "\\|"
+                : text[i] == '`' && code ? "'"
+                : tag && !code           ? "&lt;"
+                                         : std::string(1, text[i]);
+    }
+    return code ? '`' + result + '`' : result;
+  };
+  const auto print_row = [&](const std::vector<std::string>& cells, std::size_t names) {
     out << '|';
-    for (std::size_t i = 0; i < cells.size(); ++i)
-      out << ' ' << (i < names ? '`' + cells[i] + '`' : cells[i]) << " |";
+    for (std::size_t i = 0; i < cells.size(); ++i) out << ' ' << cell(cells[i], i < names) << " |";
     out << '\n';
   };
   print_row(table.head, 0);

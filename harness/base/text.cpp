@@ -1,7 +1,6 @@
 #include "harness/base/text.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <iomanip>
@@ -33,10 +32,30 @@ void append(std::string& list, const std::string& more, const char* separator) {
   list += (list.empty() ? "" : separator) + more;
 }
 
+std::string harmless(const std::string& text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = [&](std::size_t k) -> unsigned {
+      return i + k < text.size() ? static_cast<unsigned char>(text[i + k]) : 0;
+    };
+    const unsigned last = byte(2);
+    std::size_t taken = 0;  // bytes of a character that is replaced
+    if (byte(0) < 0x20 || byte(0) == 0x7F) taken = 1;
+    if (byte(0) == 0xC2 && byte(1) >= 0x80 && byte(1) < 0xA0) taken = 2;  // U+0080 to U+009F
+    // U+200B to U+200F, U+2028 to U+202E, U+2060 to U+206F, and the byte order mark.
+    if (byte(0) == 0xE2 && byte(1) == 0x80 &&
+        ((last >= 0x8B && last <= 0x8F) || (last >= 0xA8 && last <= 0xAE)))
+      taken = 3;
+    if (byte(0) == 0xE2 && byte(1) == 0x81 && last >= 0xA0 && last <= 0xAF) taken = 3;
+    if (byte(0) == 0xEF && byte(1) == 0xBB && last == 0xBF) taken = 3;
+    result += taken > 0 ? '?' : text[i];
+    if (taken > 1) i += taken - 1;
+  }
+  return result;
+}
+
 std::string shortened(const std::string& text, std::size_t most) {
-  std::string line = text.substr(0, most);
-  std::ranges::replace_if(
-      line, [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
+  const std::string line = harmless(text.substr(0, most));
   return text.size() > most ? line + "..." : line;
 }
 

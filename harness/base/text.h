@@ -18,7 +18,11 @@ std::string told_apart(double value, double other);
 // `more` at the end of a list, after a separator unless it is the first.
 void append(std::string& list, const std::string& more, const char* separator = ", ");
 
-// A text shortened for a message: its beginning if it is long, and always one line.
+// A text from elsewhere as it can be printed: '?' for each character that controls a terminal or
+// the direction of writing, or is invisible (UTF-8).
+std::string harmless(const std::string& text);
+
+// A harmless text shortened for a message: its beginning if it is long, and always one line.
 std::string shortened(const std::string& text, std::size_t most = 120);
 
 // Breaks lines longer than `columns` at spaces and indents the rest; longer words stay whole.

@@ -16,9 +16,14 @@ namespace {
 
 using nlohmann::json;
 
+// Throws UsageError for results of --untimed: what is made of these ranks times.
 std::vector<NamedResult> read_all(const Words& files, ResultKinds kinds) {
   std::vector<NamedResult> results;
-  for (const std::string& file : files) results.push_back({file, read_result(file, kinds)});
+  for (const std::string& file : files) {
+    results.push_back({file, read_result(file, kinds)});
+    if (!is_timed(results.back().document))
+      throw UsageError("'" + file + "' was made with --untimed: its times mean nothing");
+  }
   return results;
 }
 

@@ -63,17 +63,12 @@ std::string xml(const std::string& text) {
       text, {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\n', "&#10;"}}, '?');
 }
 
-// Inside a cell neither the line nor the cell may end, and nothing is a tag.
+// Nothing ends the line, or is a tag or emphasis.
 std::string cell(const std::string& text) {
-  return escaped(text,
-                 {{'|', "\\|"},
-                  {'*', "\\*"},
-                  {'_', "\\_"},
-                  {'`', "\\`"},
-                  {'\\', "\\\\"},
-                  {'<', "&lt;"},
-                  {'&', "&amp;"}},
-                 ' ');
+  return escaped(
+      text,
+      {{'*', "\\*"}, {'_', "\\_"}, {'`', "\\`"}, {'\\', "\\\\"}, {'<', "&lt;"}, {'&', "&amp;"}},
+      ' ');
 }
 
 // "drape/icd/n:225/..." of sweep strain: class strain.drape.icd.

@@ -96,6 +96,51 @@ void add_stability(json& all, const json& more) {
   }
 }
 
+// Texts of a file as they may be printed anywhere.
+void make_harmless(json& value) {
+  if (value.is_string()) value = harmless(value.get_ref<const std::string&>());
+  if (value.is_structured()) std::ranges::for_each(value, make_harmless);
+}
+
+// What no run can have measured, as "is ..."; empty: nothing.
+std::string impossible(const json& point) {
+  const auto number = [](const json& object, const char* key) {
+    const json value = object.value(key, json());
+    return value.is_number() ? value.get<double>() : std::nan("");
+  };
+  const bool ok = point.at("status") == "ok";
+  if (point.at("best").get<bool>() && !ok) return "is a best one, but did not end well";
+  constexpr double rounding = 1 + 1e-5;
+  if (ok && number(point, "max_strain") > number(point, "strain_limit") * rounding)
+    return "ended well with more strain than its limit";
+  for (const char* error : {"trajectory", "trajectory_mean", "trajectory_max"})
+    if (number(point.at("error"), error) < 0) return "has a negative error";
+  const json& times = point.at("seconds_per_simulated_second");
+  if (times.is_null()) return "";
+  const auto samples = times.at("samples").get<std::vector<double>>();
+  if (samples.empty()) return "";
+  const auto [least, most] = std::ranges::minmax(samples);
+  if (!(least > 0)) return "has a time that is not positive";
+  const auto fits = [&](const char* key, double value) {
+    return std::abs(number(times, key) - value) <= 1e-6 * most;
+  };
+  if (!fits("min", least) || !fits("median", quantile(samples, 0.5)) ||
+      !fits("q1", quantile(samples, 0.25)) || !fits("q3", quantile(samples, 0.75)))
+    return "has times that are not those of its samples";
+  return "";
+}
+
+void check_points(const json& document, const std::string& path) {
+  std::set<std::string> ids;
+  for (const json& point : document.at("points")) {
+    const std::string id = point.at("id").get<std::string>();
+    std::string why = impossible(point);
+    if (!ids.insert(point.at("sweep").get<std::string>() + id).second) why = "is there twice";
+    if (!why.empty())
+      throw UsageError("'" + path + "' cannot be a result: point '" + shortened(id) + "' " + why);
+  }
+}
+
 }  // namespace
 
 json result_document(json context, const Suite& suite, const std::vector<std::string>& command,
@@ -157,7 +202,11 @@ void check_result(const json& document, const std::string& path, ResultKinds kin
   const json name = document.is_object() ? document.value("schema", json()) : json();
   std::string names;
   for (const auto& [full_name, schema] : permitted) {
-    if (name == full_name) return check_schema(document, schema, path);
+    if (name == full_name) {
+      check_schema(document, schema, path);
+      if (document.contains("points")) check_points(document, path);
+      return;
+    }
     names += (names.empty() ? "\"" : ", \"") + std::string(full_name) + "\"";
   }
   throw UsageError("'" + path + "' is not a result file: its schema is " + value_text(name) +
@@ -167,6 +216,7 @@ void check_result(const json& document, const std::string& path, ResultKinds kin
 json parse_result(const std::string& text, const std::string& path, ResultKinds kinds) {
   json document = parse_document(text, path);
   check_result(document, path, kinds);
+  make_harmless(document);
   return document;
 }
 

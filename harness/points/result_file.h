@@ -27,10 +27,11 @@ bool is_timed(const nlohmann::json& document);
 
 // The kinds of documents that a reader accepts.
 enum class ResultKinds { sweeps, answers, all };  // sweeps: stability sweeps, too
-// Throws UsageError, naming the file, for a document of another kind or one that is not as its
-// schema says.
+// Throws UsageError, naming the file, for a document of another kind, one that is not as its schema
+// says, and one that no run can have made: times that are not those of their samples, say.
 void check_result(const nlohmann::json& document, const std::string& path,
                   ResultKinds kinds = ResultKinds::sweeps);
+// These replace characters that control a terminal.
 nlohmann::json parse_result(const std::string& text, const std::string& path,
                             ResultKinds kinds = ResultKinds::sweeps);
 nlohmann::json read_result(const std::string& path, ResultKinds kinds = ResultKinds::sweeps);

@@ -166,10 +166,39 @@ void print_noise(std::ostream& out, const json& document) {
         << " % during the run; counters and errors are valid, compare times with care\n";
 }
 
+// Runs whose times mean nothing: the least error of each contestant, and the strain that goes with
+// it.
+void print_errors(std::ostream& out, const Runs& runs) {
+  const auto place_of = [](const Point& point) {
+    return scene_words(point.scene()) + " of " + number_text(point.vertices()) + " vertices at " +
+           percent(point.strain_limit()) + " strain";
+  };
+  const auto rank = [](const Point& point) {
+    const double error = point.error_at(any_motion).distance;
+    return std::tuple(!point.ok(), std::isnan(error), error);
+  };
+  for (const auto& [place, points] : grouped(runs.points, place_of)) {
+    Table table{{"", "step, s", "error", "strain"}};
+    for (const auto& [name, own] : grouped(points, &Point::contestant)) {
+      const Point& best = *std::ranges::min_element(own, {}, rank);
+      if (best.ok())
+        table.rows.push_back({name, step_text(best.step()),
+                              percent_or_unknown(best.error_at(any_motion).distance),
+                              percent_or_unknown(best.delivered_strain())});
+    }
+    out << '\n' << place << ": the least error of each contestant\n";
+    print_aligned(out, table);
+  }
+}
+
 }  // namespace
 
 void print_sweep(std::ostream& out, const json& document, const std::string& file, bool all) {
   const Runs runs(document);
+  if (!is_timed(document)) {
+    print_errors(out, runs);
+    return print_failures(out, runs, all);
+  }
   const auto planes = planes_of(runs);
   print_grid(out, planes);
   out << "(~: too close to the next, or too few samples, to tell; u: with untuned settings; errors "

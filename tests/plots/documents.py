@@ -3,6 +3,7 @@
 import copy
 import json
 import os
+import re
 import subprocess
 import tempfile
 from functools import cache
@@ -51,7 +52,8 @@ def point(contestant: str, sweep: str = "strain", scene: str = "chain", vertices
     given = copy.deepcopy(committed("figure1.json")["points"][0])
     errors = {"trajectory": 0.02, "gap": 1e-6, "valid_until": 1.0, **(error or {})}
     return {**given, "sweep": sweep, "scene": scene, "solver": contestant, "contestant": contestant, "vertices": vertices,
-            "resolution": vertices, "strain_limit": limit, "step": step, "status": status, "status_detail": "", "duration": 1.0,
+            "resolution": vertices, "strain_limit": limit, "max_strain": limit, "step": step, "status": status, "status_detail": "",
+            "duration": 1.0,
             "id": f"{scene}/{contestant}/n:{vertices}/strain:{limit:g}/h:{step:g}",
             "scene_parameters": {"n": vertices, "gravity": 9.81, "duration": 1.0}, "work": {**given["work"], "steps": 100},
             "seconds_per_simulated_second": timing(seconds) if seconds else None, "error": {**given["error"], **errors},
@@ -144,7 +146,16 @@ def analysed(result: Json) -> Result:
         file.flush()
         shown = subprocess.run([BENCH, "show", file.name, "--json"], capture_output=True, text=True, check=False)
     assert shown.returncode == 0, shown.stderr
-    return Result({**result, "analysis": json.loads(shown.stdout)})
+    return Result({**printable(result), "analysis": json.loads(shown.stdout)})
+
+
+def printable(value: Any) -> Any:
+    """As bench reads a file: without characters that control a terminal."""
+    if isinstance(value, dict):
+        return {key: printable(member) for key, member in value.items()}
+    if isinstance(value, list):
+        return [printable(member) for member in value]
+    return re.sub("[\0-\x1f\x7f-\x9f\u200b-\u200f\u2028-\u202e\u2060-\u206f\ufeff]", "?", value) if isinstance(value, str) else value
 
 
 def drawn(result: Json) -> dict[str, Figure]:

@@ -113,7 +113,7 @@ def test_the_noise_of_a_pair_is_a_bar_and_the_second_no_curve(make, name: str) -
 
     result = make()
     assert bars(result) == []
-    result["points"] += [{**made, "contestant": "fast_projection_again", "seconds_per_simulated_second": timing(99.0)}
+    result["points"] += [{**made, "contestant": "fast_projection_again", "id": made["id"] + "again", "seconds_per_simulated_second": timing(99.0)}
                          for made in result["points"] if made["solver"] == "fast_projection"]
     result["context"]["noise"] = {"pair": ["fast_projection", "fast_projection_again"], "places": 3, "median": 0.1, "q95": 0.2}
     (bar,) = bars(result)

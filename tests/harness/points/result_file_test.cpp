@@ -7,6 +7,8 @@
 #include <fstream>
 
 #include "harness/analysis/findings.h"
+#include "harness/base/files.h"
+#include "harness/base/table.h"
 #include "harness/compare/comparison.h"
 #include "harness/points/context.h"
 #include "harness/points/schema.h"
@@ -145,6 +147,48 @@ TEST(ResultFile, NamesItsContestantsAndItsNoise) {
   ASSERT_NE(again, known.end());
   EXPECT_EQ((*again)["unranked"], true);
   EXPECT_EQ((*(again - 1))["name"], "icd") << "right after it";
+}
+
+// A sound file with one number or word changed that no run can have measured.
+TEST(ResultFile, RefusesWhatNoRunCanHaveMeasured) {
+  const std::string sound = read_file(source("results/figure1.json"), "result file");
+  ASSERT_NO_THROW((void)parse_result(sound, "it"));
+  const json document = json::parse(sound);
+  const auto points = document.at("points");
+  const auto at =
+      std::ranges::find_if(points, [](const json& p) { return p.at("status") == "ok"; });
+  const auto place = static_cast<std::size_t>(at - points.begin());
+  const auto refused = [&](const std::string& pointer, const json& value, const char* why) {
+    json changed = document;
+    changed["points"][place][json::json_pointer(pointer)] = value;
+    const std::string said = refusal_of([&] { (void)parse_result(changed.dump(), "it"); });
+    EXPECT_NE(said.find(why), std::string::npos) << pointer << ": " << said;
+  };
+  const std::string times = "seconds_per_simulated_second";
+  const double median = at->at(times).at("median");
+  for (const char* quantile : {"/min", "/q1", "/median", "/q3"})
+    refused("/" + times + quantile, 1.5 * median + 1e-9, "not those of its samples");
+  refused("/" + times + "/samples/0", 0, "not positive");
+  refused("/max_strain", 1.1 * at->at("strain_limit").get<double>(), "more strain than its limit");
+  refused("/error/trajectory", -1e-3, "negative error");
+  json failed = *at;
+  failed["best"] = true;
+  failed["status"] = "diverged";
+  refused("", failed, "did not end well");
+  refused("/id", points.at(place == 0 ? 1 : 0).at("id"), "is there twice");
+}
+
+TEST(ResultFile, TextsControlNoTerminal) {
+  const std::string hostile = "\x1b[31m a\u202e b\u0085\u2066\ufeff\n <script>";
+  json document = json::parse(read_file(source("results/figure1.json"), "result file"));
+  document["points"][0]["status_detail"] = hostile;
+  const json read = parse_result(document.dump(), "it");
+  EXPECT_EQ(read.at("points").at(0).at("status_detail"), "?[31m a? b???? <script>");
+  std::ostringstream page;
+  print_markdown(page, {{"a"}, {{"x`y|"}, {hostile}}, 1});
+  print_markdown(page, {{"a", "b"}, {{"x", "<script>|</script>, 1 < 2, <= 3"}}});
+  EXPECT_NE(page.str().find("| `x'y\\|` |"), std::string::npos) << page.str();
+  EXPECT_NE(page.str().find("&lt;script>\\|&lt;/script>, 1 < 2, <= 3"), std::string::npos);
 }
 
 }  // namespace
