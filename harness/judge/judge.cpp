@@ -26,13 +26,17 @@ double root_mean_square(const std::vector<double>& numbers) {
 }  // namespace
 
 Judge::Judge(const Scene& scene, const Options& options)
-    : scene_(scene), options_(options), energy_(scene, options.velocities) {
+    : scene_(scene),
+      options_(options),
+      energy_(scene, options.velocities),
+      crossings_(*scene.problem) {
   options_.sample_every = std::max(1, options_.sample_every);
   if (options_.residual) probe_.emplace();
 }
 
 void Judge::before(const State& state, double h) {
   if (probe_ && (steps_ + 1) % options_.sample_every == 0) probe_->watch();
+  crossings_.before(state);
   // A sample in the middle of a step is interpolated.
   if (options_.reference && next_ < options_.reference->times.size() &&
       options_.reference->times[next_] < state.time + h - time_tolerance)
@@ -91,6 +95,7 @@ double Judge::after(const Positions& filtered, const State& state, double h, boo
   if (scene_.problem->collider())
     raise(running_.max_strain_after_collision, strain_range(*scene_.problem, state.x).most);
   energy_.after(state, h);
+  crossings_.after(state);
   look_at_marks(state, h);
   if (counts && ++steps_ % options_.sample_every == 0) {
     sample(filtered, state);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "harness/judge/crossings.h"
 #include "harness/judge/energy.h"
 #include "harness/judge/reference.h"
 #include "harness/points/point.h"
@@ -69,6 +70,7 @@ class Judge {
   // After the last step.
   Measures finish();
   const EnergyRecord& energy() const { return energy_; }
+  const Crossings& crossings() const { return crossings_; }
 
  private:
   void sample(const inextensible::Positions& filtered, const inextensible::State& state);
@@ -83,6 +85,7 @@ class Judge {
   std::vector<double> strains_;    // |strain| of every edge at every sampled instant
   std::vector<double> delivered_;  // the same after the collision filter; with a collider only
   EnergyRecord energy_;
+  Crossings crossings_;
   double kinetic_sum_ = 0;
   double marked_time_ = 0, squared_speed_ = 0;  // s, m^2/s^2 times s: over the last third
   int samples_ = 0;

@@ -28,7 +28,8 @@ constexpr double tension_over_force = 5;
 // Runs that reached their end. The measured run reports what else went wrong.
 bool strain_counts(PointStatus status) {
   return status == PointStatus::ok || status == PointStatus::strain_missed ||
-         status == PointStatus::energy_gained || status == PointStatus::motion_lost;
+         status == PointStatus::energy_gained || status == PointStatus::motion_lost ||
+         status == PointStatus::body_crossed;
 }
 
 class StiffnessSearch {

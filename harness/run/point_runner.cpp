@@ -200,6 +200,11 @@ class PointRunner::Observed : public Observer {
                !gained.empty()) {
       run_.status = PointStatus::energy_gained;
       run_.detail = gained;
+    } else if (const int crossed = judge_->crossings().vertices(); crossed > 0) {
+      run_.status = PointStatus::body_crossed;
+      run_.detail = std::to_string(crossed) + " of " +
+                    std::to_string(runner_.scene_.problem->vertices()) +
+                    " vertices passed through the body; shorter steps may not";
     } else if (found.moved < least_motion) {
       run_.status = PointStatus::motion_lost;
       run_.detail = "its vertices moved " + number_text(found.moved, 3) +
