@@ -26,12 +26,25 @@ void SceneOptions::declare(const Command& to, const std::string& standard) {
             "near(1:2:0)', a vertex of the file and the nearest one",
             "WHERE");
   to.option("--collider", body, "of mesh:FILE.obj: the body, a closed mesh", "FILE.obj");
+  to.option("--floor", floor, "of mesh:FILE.obj: a floor at this height, in the file's unit", "Y");
+  to.option("--load", load,
+            "of mesh:FILE.obj: the vertices that bear the weight `load` (--set load=KG), as pins",
+            "WHERE");
+  to.option("--rest", rest,
+            "of mesh:FILE.obj: the unstretched shape, with the same faces and lines", "FILE.obj");
   to.option("--weld", weld,
             "of mesh:FILE.obj: corners this close, in the file's unit, are one vertex; 0: none",
             "DISTANCE");
 }
 
-std::string SceneOptions::name() const { return with_mesh_parts(scene, pins, body, weld); }
+std::string SceneOptions::name() const {
+  return with_mesh_parts(scene, {{"pins", pins},
+                                 {"load", load},
+                                 {"body", body},
+                                 {"floor", floor},
+                                 {"rest", rest},
+                                 {"weld", weld}});
+}
 
 SceneParameters SceneOptions::given_parameters() const {
   SceneParameters parameters;

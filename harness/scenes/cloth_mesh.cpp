@@ -161,6 +161,13 @@ std::set<Side> sides_of(const std::vector<Face>& faces) {
   return sides;
 }
 
+// What keeps its length.
+std::set<Side> constrained_sides(const ClothMesh& mesh) {
+  std::set<Side> sides = sides_of(mesh.quads);
+  for (const auto& [a, b] : mesh.ropes) sides.insert(side(a, b));
+  return sides;
+}
+
 // Yarns are three vertices in a row: two of the sides that meet at the middle vertex are opposite
 // each other. There are none where yarns end or five sides meet.
 std::vector<std::array<int, 3>> yarns_of(const ClothMesh& mesh) {
@@ -223,6 +230,7 @@ std::vector<int> pieces_of(const ClothMesh& mesh) {
   };
   join(mesh.quads);
   join(mesh.triangles);
+  join(mesh.ropes);
   std::map<int, int> number;
   std::vector<int> piece;
   for (int v = 0; v < static_cast<int>(root.size()); ++v)
@@ -239,6 +247,7 @@ ClothMesh cloth_of(const MeshFile& file) {
     if (place[v] < 0) {
       place[v] = static_cast<int>(cloth.vertices.size());
       cloth.vertices.push_back(file.vertices[v]);
+      cloth.in_file.push_back(v);
     }
     return place[v];
   };
@@ -259,6 +268,12 @@ ClothMesh cloth_of(const MeshFile& file) {
   }
   for (std::size_t t = 0; t < triangles.size(); ++t)
     if (!taken[t]) cloth.triangles.push_back(triangles[t]);
+  for (const auto& [a, b] : file.ropes) {
+    if (file.vertices[a] == file.vertices[b])
+      throw UsageError("'" + file.path + "': a line between vertices " + std::to_string(a + 1) +
+                       " and " + std::to_string(b + 1) + " has no length");
+    cloth.ropes.push_back({vertex(a), vertex(b)});
+  }
   return cloth;
 }
 
@@ -267,6 +282,10 @@ ClothMesh refined(const ClothMesh& mesh, int n) {
   Refinement refinement{mesh, n};
   for (const auto& quad : mesh.quads) refinement.cut(quad);
   for (const auto& triangle : mesh.triangles) refinement.cut(triangle);
+  for (const auto& [a, b] : mesh.ropes)
+    for (int i = 0; i < n; ++i)
+      refinement.fine.ropes.push_back(
+          {refinement.on_side(a, b, i), refinement.on_side(a, b, i + 1)});
   return refinement.fine;
 }
 
@@ -283,13 +302,16 @@ Draft cloth_draft(const ClothMesh& mesh, const SceneParameters& p) {
   inextensible::ProblemParts& parts = draft.parts;
   Scene& scene = draft.scene;
   const std::vector<double> area = areas(mesh);
+  std::vector<double> rope(mesh.vertices.size(), 0.0);  // each vertex's share, m
+  for (const auto& [a, b] : mesh.ropes)
+    for (const int v : {a, b}) rope[v] += length(a, b) / 2;
   for (int v = 0; v < n; ++v) {
     scene.start.x.col(v) = mesh.vertices[v];
     if (held(v)) parts.pinned.push_back(v);
-    parts.mass.push_back(p.at("density") * area[v]);
+    parts.mass.push_back(p.at("density") * area[v] + value_or_zero(p, "line_density") * rope[v]);
     if (p.at("drag") > 0) parts.drag.push_back(p.at("drag") * area[v]);
   }
-  const std::set<Side> yarn_sides = sides_of(mesh.quads);
+  const std::set<Side> yarn_sides = constrained_sides(mesh);
   for (const auto& [a, b] : yarn_sides)
     if (!held(a, b)) draft.constrain(a, b, length(a, b));
   if (p.at("shear") > 0) {
@@ -326,7 +348,7 @@ Draft cloth_draft(const ClothMesh& mesh, const SceneParameters& p) {
 }
 
 std::pair<int, int> count_cloth(const ClothMesh& mesh) {
-  const auto constrained = std::ranges::count_if(sides_of(mesh.quads), [&](const Side& s) {
+  const auto constrained = std::ranges::count_if(constrained_sides(mesh), [&](const Side& s) {
     return !mesh.held[s.first] || !mesh.held[s.second];
   });
   return {static_cast<int>(mesh.vertices.size()), static_cast<int>(constrained)};

@@ -17,16 +17,18 @@ struct ClothMesh {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::array<int, 4>> quads;      // corners in turn
   std::vector<std::array<int, 3>> triangles;  // what is left
-  std::vector<char> held = {};                // of each vertex, whether a scene pins it
+  std::vector<std::array<int, 2>> ropes = {};
+  std::vector<int> in_file = {};  // of each vertex, its place in the file; empty once it is refined
+  std::vector<char> held = {};    // of each vertex, whether a scene pins it
 };
 
 // Quads of a file's faces: triangles are joined to quads where two make one whose angles are within
 // `most_oblique` of right ones, the best first. Faces of more corners are fans of triangles.
-// Vertices that no face has are left out. Throws UsageError for what distinct_faces() refuses, and
-// for sides of more than two faces.
+// Lines are ropes. Vertices that neither has are left out. Throws UsageError for what
+// distinct_faces() refuses, and for sides of more than two faces.
 ClothMesh cloth_of(const MeshFile& file);
 
-// The piece that each vertex is of, from 0 on: faces that share a vertex are of one piece.
+// The piece that each vertex is of, from 0 on: faces and ropes that share a vertex are of one.
 std::vector<int> pieces_of(const ClothMesh& mesh);
 
 // Each side cut into n.
@@ -38,12 +40,13 @@ ClothMesh refined(const ClothMesh& mesh, int n);
 ParameterInfos with_cloth_parameters(const ParameterInfos& own, const ClothDefaults& cloth,
                                      double duration);
 
-// The cloth is at rest, and unstretched, as the mesh lies. Sides of quads keep their length;
+// The cloth is at rest, and unstretched, as the mesh lies. Sides of quads and ropes keep their
+// length;
 // diagonals of quads, and the other sides of triangles, are springs of the shear stiffness (each
 // diagonal bears G (l gamma)^2 / 4 of a square sheared by gamma); yarns bend, straight at rest;
 // all forces act as they are at the end of a step. Parameters: density (kg/m^2), gravity, shear
-// (N/m), bending (N m), drag (N s/m^3), duration. Left to the caller: the scene's size, and what is
-// not at rest there.
+// (N/m), bending (N m), drag (N s/m^3), duration, and line_density (kg/m) if there are ropes. Left
+// to the caller: the scene's size, and what is not at rest there.
 Draft cloth_draft(const ClothMesh& mesh, const SceneParameters& p);
 
 // Its vertices and constraints.

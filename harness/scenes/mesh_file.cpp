@@ -67,7 +67,10 @@ void read_line(std::istringstream words, const std::string& where, int line, Mes
     while (words >> word) face.corners.push_back(corner_of(word, mesh.vertices.size(), where));
     if (face.corners.size() < 3) throw UsageError(where + ": a face needs three corners or more");
   } else if (word == "l") {
-    ++mesh.lines;
+    for (int before = -1, corner = 0; words >> word; before = corner) {
+      corner = corner_of(word, mesh.vertices.size(), where);
+      if (before >= 0) mesh.ropes.push_back({before, corner});
+    }
   } else if (!word.empty() && std::ranges::find(left_out, word) == std::end(left_out)) {
     throw UsageError(where + ": '" + shortened(word) + "' is no keyword of an OBJ file");
   }
@@ -91,8 +94,9 @@ MeshFile read_mesh_file(const std::string& path) {
   for (std::string line; next_line(file, line, number);)
     read_line(std::istringstream(line), "'" + path + "', line " + std::to_string(number), number,
               mesh);
-  if (mesh.faces.empty())
-    throw UsageError("'" + path + "' has no faces: is it a mesh in Wavefront's OBJ format?");
+  if (mesh.faces.empty() && mesh.ropes.empty())
+    throw UsageError("'" + path +
+                     "' has no faces and no lines: is it a mesh in Wavefront's OBJ format?");
   return mesh;
 }
 
@@ -117,6 +121,8 @@ void weld(MeshFile& file, double distance) {
   }
   for (MeshFile::Face& face : file.faces)
     for (int& corner : face.corners) corner = first[corner];
+  for (auto& rope : file.ropes)
+    for (int& end : rope) end = first[end];
 }
 
 std::vector<MeshFile::Face> distinct_faces(const MeshFile& file) {

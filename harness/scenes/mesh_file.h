@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -13,9 +14,9 @@ struct MeshFile {
     int line;                  // of the file, from 1
   };
   std::string path;
-  std::vector<Eigen::Vector3d> vertices;  // in the file's unit
-  std::vector<Face> faces;                // in the order of the file
-  int lines = 0;                          // elements "l", which are left out
+  std::vector<Eigen::Vector3d> vertices;       // in the file's unit
+  std::vector<Face> faces;                     // in the order of the file
+  std::vector<std::array<int, 2>> ropes = {};  // segments of the elements "l"
 
   // "'m.obj', face 12 (line 80)", as the file counts.
   std::string name(const Face& face) const;
@@ -24,7 +25,7 @@ struct MeshFile {
 // Vertices, faces and lines. A byte order mark, comments after the data and lines continued by a
 // backslash are read as such; texture coordinates, materials, curves and groups are left out.
 // Throws UsageError, naming file and line, for any other keyword, numbers that are none, corners
-// without a vertex, and files without a face.
+// without a vertex, and files without a face or line.
 MeshFile read_mesh_file(const std::string& path);
 
 // Corners closer than `distance` (in the file's unit) become one vertex, the first of them.

@@ -92,13 +92,16 @@ Condition read_pins(const std::string& text, const MeshFile& file) {
 // The files, read once for the scenes of all parameters.
 struct MeshModel {
   std::string name, identity;  // name: with the hash of all that the scene is made of
-  Condition pinned;            // empty: nothing is
-  ClothMesh cloth;
+  Condition pinned, loaded;    // empty: nothing is
+  ClothMesh cloth, start;      // unstretched, and where it begins
   inextensible::TriangleMesh body;
+  std::optional<double> floor;  // its height
+
+  bool has_body() const { return floor || !body.triangles.empty(); }
 };
 
-ClothMesh with_pins(const MeshModel& model, ClothMesh cloth) {
-  for (const Eigen::Vector3d& v : cloth.vertices)
+ClothMesh with_pins(const MeshModel& model, ClothMesh cloth, const ClothMesh& start) {
+  for (const Eigen::Vector3d& v : start.vertices)
     cloth.held.push_back(model.pinned && model.pinned(v));
   return cloth;
 }
@@ -208,61 +211,101 @@ void check_start(const std::string& path, const ClothMesh& cloth,
                      " of the file's units");
 }
 
+// The same faces and lines elsewhere.
+ClothMesh in_shape_of(const MeshFile& file, ClothMesh cloth, const MeshFile& rest) {
+  const auto same = [](const MeshFile::Face& a, const MeshFile::Face& b) {
+    return a.corners == b.corners;
+  };
+  if (!std::ranges::equal(file.faces, rest.faces, same) || file.ropes != rest.ropes ||
+      file.vertices.size() != rest.vertices.size())
+    throw UsageError("'" + rest.path + "' has other faces or lines than '" + file.path + "'");
+  for (std::size_t v = 0; v < cloth.vertices.size(); ++v)
+    cloth.vertices[v] = file.vertices[cloth.in_file[v]];
+  return cloth;
+}
+
+// "mesh:m.obj,pins=y>1,body=b.obj": the words after the file, by what they are for.
+std::map<std::string, std::string> parts_of(const std::string& name) {
+  static const std::set<std::string> known{"pins", "body",  "weld",   "rest",
+                                           "load", "floor", "content"};
+  std::map<std::string, std::string> parts;
+  std::istringstream words(name.substr(prefix.size()));
+  std::getline(words, parts["file"], ',');
+  for (std::string word; std::getline(words, word, ',');) {
+    const std::string part = word.substr(0, word.find('='));
+    if (!known.contains(part) || part.size() == word.size())
+      throw UsageError("scene '" + name + "': '" + word +
+                       "' must begin with pins=, body=, weld=, rest=, load= or floor=, as in "
+                       "mesh:shirt.obj,pins=y>1.2");
+    parts[part] = word.substr(part.size() + 1);
+  }
+  return parts;
+}
+
+// The number that an option gives.
+std::optional<double> number_of(const std::map<std::string, std::string>& parts,
+                                const std::string& part, double least) {
+  if (!parts.contains(part)) return {};
+  const std::string& text = parts.at(part);
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != 0 || !(value >= least && value < 1e6))
+    throw UsageError("--" + part + " is '" + shortened(text) + "', must be a number" +
+                     (least == 0 ? " of at least 0" : ""));
+  return value;
+}
+
 std::shared_ptr<const MeshModel> read_model(const std::string& name) {
   auto model = std::make_shared<MeshModel>();
-  std::string path, body, pins, expected;
-  std::optional<double> welded;
-  std::istringstream words(name.substr(prefix.size()));
-  std::getline(words, path, ',');
-  std::string content = read_file(path, "mesh");
-  for (std::string word; std::getline(words, word, ',');) {
-    if (word.starts_with("pins=")) {
-      pins = without_spaces(word.substr(5));
-    } else if (word.starts_with("body=")) {
-      body = word.substr(5);
-      content += read_file(body, "mesh");
-      continue;
-    } else if (word.starts_with("content=")) {
-      expected = word.substr(8);
-      continue;
-    } else if (double distance = 0; std::sscanf(word.c_str(), "weld=%lf", &distance) == 1) {
-      if (!(distance >= 0 && distance < 1e6))
-        throw UsageError("--weld is " + word.substr(5) + ", must be a distance of at least 0");
-      welded = distance;
-    } else {
-      throw UsageError("scene '" + name + "': '" + word +
-                       "' must be pins=..., weld=... or body=..., as in mesh:shirt.obj,pins=y>1.2");
-    }
-    content += word;
-  }
+  auto parts = parts_of(name);
+  const std::string expected = parts["content"];
+  parts.erase("content");
+  std::string content;
+  for (const auto& [part, text] : parts)
+    content += part == "file" || part == "body" || part == "rest" ? read_file(text, "mesh")
+                                                                  : part + "=" + text + ",";
   model->identity = fnv1a(content);
+  const std::string& path = parts["file"];
   if (!expected.empty() && expected != model->identity)
     throw UsageError("'" + path + "' has changed: the scene's files and pins have the hash " +
                      expected + ", these have " + model->identity);
   model->name = name + (expected.empty() ? ",content=" + model->identity : "");
+
+  const std::optional<double> welded = number_of(parts, "weld", 0);
+  if (welded && parts.contains("rest")) throw UsageError("--weld and --rest exclude each other");
   const auto read = [&](const std::string& file) {
     MeshFile mesh = read_mesh_file(file);
     if (welded.value_or(0) > 0) weld(mesh, *welded);
     return mesh;
   };
   const MeshFile file = read(path);
-  model->cloth = cloth_of(file);
-  if (!pins.empty()) model->pinned = read_pins(pins, file);
-  const ClothMesh cloth = with_pins(*model, model->cloth);
+  model->cloth = model->start = cloth_of(file);
+  if (parts.contains("rest")) {
+    const MeshFile rest = read(parts["rest"]);
+    model->cloth = cloth_of(rest);
+    model->start = in_shape_of(file, model->cloth, rest);
+  }
+  if (parts.contains("pins")) model->pinned = read_pins(without_spaces(parts["pins"]), file);
+  if (parts.contains("load")) model->loaded = read_pins(without_spaces(parts["load"]), file);
+  model->floor = number_of(parts, "floor", -1e6);
+  if (parts.contains("body")) model->body = body_of(read(parts["body"]));
+
+  const ClothMesh cloth = with_pins(*model, model->cloth, model->start);
   const bool holds = std::ranges::any_of(cloth.held, std::identity{});
-  if (!pins.empty() && !holds)
+  if (model->pinned && !holds)
     throw UsageError("scene '" + name + "': no vertex is where the pins are");
-  if (!holds && body.empty())
-    throw UsageError(
-        "scene '" + name +
-        "': nothing is pinned and nothing is below; add --pins 'y > ...' or --collider FILE");
-  check_cloth(path, file, cloth, !body.empty(), welded.has_value());
-  if (body.empty()) return model;
-  model->body = body_of(read(body));
+  if (model->loaded && std::ranges::none_of(model->start.vertices, model->loaded))
+    throw UsageError("scene '" + name + "': no vertex is where the load is");
+  if (!holds && !model->has_body())
+    throw UsageError("scene '" + name +
+                     "': nothing is pinned and nothing is below; add --pins 'y > ...', --floor "
+                     "HEIGHT or --collider FILE");
+  check_cloth(path, file, cloth, model->has_body(), welded.has_value());
+  if (model->body.triangles.empty()) return model;
   try {
-    check_start(path, model->cloth, inextensible::TriangleCollider(model->body, 0));
+    check_start(path, model->start, inextensible::TriangleCollider(model->body, 0));
   } catch (const std::invalid_argument& error) {
-    throw UsageError("'" + body + "' is not a body to collide with: " + error.what());
+    throw UsageError("'" + parts["body"] + "' is not a body to collide with: " + error.what());
   }
   return model;
 }
@@ -274,22 +317,56 @@ Eigen::Vector3d placed(const Eigen::Vector3d& x, const SceneParameters& p) {
   return s * x;
 }
 
-ClothMesh cloth_for(const MeshModel& model, const SceneParameters& p) {
-  ClothMesh cloth = with_pins(model, refined(model.cloth, whole(p)));
+ClothMesh placed(ClothMesh cloth, const SceneParameters& p) {
   for (Eigen::Vector3d& v : cloth.vertices) v = placed(v, p);
   return cloth;
 }
 
+ClothMesh cloth_for(const MeshModel& model, const ClothMesh& start, const SceneParameters& p) {
+  return placed(with_pins(model, refined(model.cloth, whole(p)), start), p);
+}
+
+// A block whose top is the floor, far wider than the cloth.
+void add_floor(inextensible::TriangleMesh& body, double height, const Eigen::AlignedBox3d& cloth) {
+  const double reach = 20 * cloth.diagonal().norm();
+  const auto first = static_cast<int>(body.vertices.size());
+  for (int i = 0; i < 8; ++i)
+    body.vertices.push_back({cloth.center().x() + (i & 4 ? reach : -reach),
+                             height - (i & 2 ? 0 : reach),
+                             cloth.center().z() + (i & 1 ? reach : -reach)});
+  for (const auto& [a, b, c, d] : std::initializer_list<std::array<int, 4>>{
+           {0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}}) {
+    body.triangles.push_back({first + a, first + b, first + c});
+    body.triangles.push_back({first + a, first + c, first + d});
+  }
+}
+
 Scene build_mesh(const MeshModel& model, const SceneParameters& p) {
-  Draft draft = cloth_draft(cloth_for(model, p), p);
-  if (!model.body.triangles.empty()) {
+  const ClothMesh begins = refined(model.start, whole(p)), start = placed(begins, p);
+  Draft draft = cloth_draft(cloth_for(model, begins, p), p);
+  Eigen::AlignedBox3d box;
+  int loaded = 0;
+  for (std::size_t v = 0; v < start.vertices.size(); ++v) {
+    draft.scene.start.x.col(static_cast<Eigen::Index>(v)) = start.vertices[v];
+    box.extend(start.vertices[v]);
+    loaded += model.loaded && model.loaded(begins.vertices[v]);
+  }
+  for (std::size_t v = 0; loaded > 0 && v < start.vertices.size(); ++v)
+    if (model.loaded(begins.vertices[v])) draft.parts.mass[v] += p.at("load") / loaded;
+  if (model.has_body()) {
     inextensible::TriangleMesh body = model.body;
     for (Eigen::Vector3d& v : body.vertices) v = placed(v, p);
+    if (model.floor) {
+      const double height = p.at("scale") * *model.floor;
+      if (box.min().y() < height - 1e-9 * box.diagonal().norm())
+        throw std::invalid_argument("the cloth begins below the floor, at the height " +
+                                    number_text(box.min().y()) + " m");
+      add_floor(body, height, box);
+    }
     draft.parts.collider =
         std::make_shared<const inextensible::TriangleCollider>(std::move(body), p.at("friction"));
   }
-  const inextensible::Positions& x = draft.scene.start.x;
-  draft.scene.size = (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).norm();
+  draft.scene.size = box.diagonal().norm();
   return finished(std::move(draft));
 }
 
@@ -297,37 +374,41 @@ Scene build_mesh(const MeshModel& model, const SceneParameters& p) {
 
 bool names_mesh(std::string_view scene) { return scene.starts_with(prefix); }
 
-std::string with_mesh_parts(const std::string& scene, const std::string& pins,
-                            const std::string& body, const std::string& weld) {
-  const bool given = !(pins.empty() && body.empty() && weld.empty());
-  if (!names_mesh(scene)) {
-    if (!given) return scene;
-    throw UsageError("--pins, --collider and --weld go with --scene mesh:FILE.obj, not with '" +
-                     scene + "'");
+std::string with_mesh_parts(const std::string& scene,
+                            const std::vector<std::pair<std::string, std::string>>& parts) {
+  std::string name = scene;
+  for (const auto& [part, text] : parts) {
+    if (text.empty()) continue;
+    if (text.find(',') != std::string::npos)
+      throw UsageError("'" + text + "': a comma cannot stand here or in a file's name");
+    name += "," + part + "=" + (part == "body" || part == "rest" ? text : without_spaces(text));
   }
-  for (const std::string& part : {pins, body, weld}) {
-    if (part.find(',') != std::string::npos)
-      throw UsageError("'" + part + "': a comma cannot stand in pins or a file's name here");
-  }
-  const std::string name = scene + (pins.empty() ? "" : ",pins=" + without_spaces(pins)) +
-                           (body.empty() ? "" : ",body=" + body) +
-                           (weld.empty() ? "" : ",weld=" + weld);
-  return read_model(name)->name;
+  if (names_mesh(scene)) return read_model(name)->name;
+  if (name != scene)
+    throw UsageError("'" + name.substr(scene.size() + 1) +
+                     "' goes with --scene mesh:FILE.obj, not with '" + scene + "'");
+  return scene;
 }
 
 SceneType mesh_scene(const std::string& name) {
   const std::shared_ptr<const MeshModel> model = read_model(name);
+  ParameterInfos own{{"n", 1, "parts that each side of the file's faces is cut into", 1, 64, true},
+                     {"scale", 1, "m per unit of the files", 0, 1e6},
+                     {"up", 1, "which of the files' axes is up: 1 is y, 2 is z", 1, 2, true}};
+  if (model->has_body())
+    own.push_back({"friction", 0.3, "Coulomb coefficient of body and floor", zero_too, 1e3});
+  if (!model->cloth.ropes.empty()) own.push_back({"line_density", 0.05, "of lines, kg/m", 0, 1e4});
+  if (model->loaded) own.push_back({"load", 1, "on the vertices of --load together, kg", 0, 1e6});
   return {.name = model->name,
           .summary = "cloth of your own",
           .parameters = with_cloth_parameters(
-              {{"n", 1, "parts that each side of the file's faces is cut into", 1, 64, true},
-               {"scale", 1, "m per unit of the files", 0, 1e6},
-               {"up", 1, "which of the files' axes is up: 1 is y, 2 is z", 1, 2, true},
-               {"friction", 0.3, "Coulomb coefficient of the body", zero_too, 1e3}},
-              {.density = 0.15, .shear = 20, .bending = 1e-5, .drag = 0.05}, 1),
+              own, {.density = 0.15, .shear = 20, .bending = 1e-5, .drag = 0.05}, 1),
           .build = [model](const SceneParameters& p) { return build_mesh(*model, p); },
-          .counts = [model](const SceneParameters& p) { return count_cloth(cloth_for(*model, p)); },
-          .like = model->body.triangles.empty() ? "patch" : "drape",
+          .counts =
+              [model](const SceneParameters& p) {
+                return count_cloth(cloth_for(*model, refined(model->start, whole(p)), p));
+              },
+          .like = model->has_body() ? "drape" : "patch",
           .identity = model->identity};
 }
 

@@ -152,7 +152,7 @@ TEST(MeshScene, IsWhatItsExporterMeans) {
   continued.insert(continued.find(" 2//1"), " \\\r\n");
   const Scene expected = built_scene("mesh:" + file_with("plain.obj", plain) + ",pins=y>-0.01");
   for (const std::string& text :
-       {"\xEF\xBB\xBF" + plain, plain + "l 1 5\nvt 0 1\nusemtl cotton # blue\n",
+       {"\xEF\xBB\xBF" + plain, plain + "vt 0 1\nusemtl cotton # blue\n",
         plain.substr(0, plain.size() - 1) + " # the last face\n", double_sided, continued,
         "v 9 9 9\n" + std::regex_replace(plain, std::regex("(\\d+)//1"), "-$1"),
         std::regex_replace(plain, std::regex("f 1//1 2//1 5//1 4//1"), "f 1 2 5\nf 1 5 4")}) {
@@ -237,15 +237,15 @@ TEST(MeshScene, WhatCanBeNoClothIsRefusedInALine) {
       {"mesh:" + good + ",pins=y>5", "no vertex is where the pins are"},
       {"mesh:" + good + ",pins=height>1", "must be like y>1.2"},
       {"mesh:" + good + ",pins=y>", "must be like y>1.2"},
-      {"mesh:" + good + ",colour=red", "must be pins=..., weld=... or body=..."},
+      {"mesh:" + good + ",colour=red", "must begin with pins="},
       {"mesh:" + good + ",body=" + good, "not a body to collide with"},
       {"mesh:nowhere.obj,pins=y>0", "nowhere.obj"},
-      {"mesh:" + file_with("empty.obj", "# nothing\n") + ",pins=y>0", "no faces"},
+      {"mesh:" + file_with("empty.obj", "# nothing\n") + ",pins=y>0", "no faces and no lines"},
       {"mesh:" + file_with("short.obj", "v 1 2\n") + ",pins=y>0", "line 1: a vertex needs three"},
       {"mesh:" + file_with("beyond.obj", two + "f 1 2 9\n") + ",pins=y>0", "line 5: no vertex 9"},
       {"mesh:" + good + ",pins=v10", "has no vertex 10"},
       {"mesh:" + good + ",pins=y<9", "all vertices are pinned"},
-      {"mesh:" + good + ",weld=-1", "must be a distance of at least 0"},
+      {"mesh:" + good + ",weld=-1", "must be a number of at least 0"},
       {"mesh:" + file_with("word.obj", two + "vx 1\nf 1 2 3 4\n") + ",pins=y>0",
        "line 5: 'vx' is no keyword"},
       {"mesh:" + file_with("flat.obj", two + "v 0 0 0\n\nf 1 2 3 4\nf 1 5 3\n") + ",pins=y>0",
@@ -261,19 +261,66 @@ TEST(MeshScene, WhatCanBeNoClothIsRefusedInALine) {
     const std::string said = refusal_of([&name = scene] { (void)find_scene(name); });
     EXPECT_NE(said.find(part), std::string::npos) << scene << ": " << said;
   }
-  EXPECT_THROW((void)with_mesh_parts("drape", "y > 1", ""), UsageError);
+  EXPECT_THROW((void)with_mesh_parts("drape", {{"pins", "y > 1"}}), UsageError);
 }
 
 // What is measured of one mesh is not taken for another of the same name.
 TEST(MeshScene, IsItsContent) {
   const std::string file = file_with("changes.obj", square(3));
-  const std::string before = with_mesh_parts("mesh:" + file, "y >= 0 and x < .1", "");
+  const std::string before = with_mesh_parts("mesh:" + file, {{"pins", "y >= 0 and x < .1"}});
   EXPECT_EQ(find_scene(before)->name, before);
   EXPECT_TRUE(before.starts_with("mesh:" + file + ",pins=y>=0andx<.1,content=")) << before;
   file_with("changes.obj", square(4));
-  EXPECT_NE(with_mesh_parts("mesh:" + file, "y >= 0 and x < .1", ""), before);
+  EXPECT_NE(with_mesh_parts("mesh:" + file, {{"pins", "y >= 0 and x < .1"}}), before);
   const std::string said = refusal_of([&] { (void)find_scene(before); });
   EXPECT_NE(said.find("has changed"), std::string::npos) << said;
+}
+
+// A rope of the file's lines is the chain that the chain's scene makes; each link is cut into n.
+TEST(MeshScene, LinesAreRopes) {
+  std::ostringstream rope;
+  for (int i = 0; i <= 8; ++i) rope << "v " << i / 8.0 << " 0 0\n";
+  rope << "l 1 2 3 4\nl 4 5 6 7 8 9\n";
+  const std::string name = "mesh:" + file_with("rope.obj", rope.str()) + ",pins=v1,load=v9";
+  const Scene once = built_scene(name, {{"line_density", 2}, {"load", 3}});
+  const Scene chain = built_scene("chain", {{"n", 9}});
+  EXPECT_EQ(joined_places(once, once.problem->edges()),
+            joined_places(chain, chain.problem->edges()));
+  EXPECT_NEAR(once.problem->total_mass(), 2 * 1 + 3 - 2.0 / 16, 1e-12)
+      << "half a link is the pin's";
+  EXPECT_NEAR(once.problem->mass()[8], 3 + 2.0 / 16, 1e-12);
+  const Scene cut = built_scene(name, {{"n", 3}, {"line_density", 2}, {"load", 3}});
+  EXPECT_EQ(cut.problem->constraints(), 24);
+  EXPECT_EQ(find_scene(name)->counts(testing::parameters(name, {{"n", 3}})), std::pair(25, 24));
+}
+
+// Cloth on strings: faces and lines are one piece.
+TEST(MeshScene, LinesHoldCloth) {
+  const std::string swing = square(3) + "v 0 1 0\nl 10 1\nl 10 3\n";
+  const Scene scene = built_scene("mesh:" + file_with("swing.obj", swing) + ",pins=v10");
+  EXPECT_EQ(scene.problem->constraints(), 12 + 2);
+}
+
+TEST(MeshScene, BeginsAwayFromItsRestShape) {
+  const std::string flat = file_with("pattern.obj", square(4));
+  std::string folded = std::regex_replace(square(4), std::regex("v (\\S+) (\\S+) (\\S+)"),
+                                          "v $1 -2 $2");  // laid down
+  const std::string name = "mesh:" + file_with("laid.obj", folded) + ",floor=-2.5,rest=" + flat;
+  const Scene scene = built_scene(name, {{"n", 2}}),
+              rest = built_scene("mesh:" + flat + ",pins=v1", {{"n", 2}});
+  EXPECT_EQ(scene.problem->rest_length(), rest.problem->rest_length());
+  for (Eigen::Index v = 0; v < scene.start.x.cols(); ++v) EXPECT_EQ(scene.start.x(1, v), -2);
+  inextensible::ContactPlane plane{};
+  inextensible::WorkCounters work;
+  ASSERT_TRUE(scene.problem->collider()->plane_at({3, -2.501, 1}, plane, work));
+  EXPECT_EQ(plane.normal, Eigen::Vector3d::UnitY());
+  EXPECT_EQ(plane.offset, -2.5);
+  EXPECT_THROW((void)built_scene("mesh:" + flat + ",floor=0.5"), std::invalid_argument);
+  const std::string other = file_with("other.obj", square(5));
+  EXPECT_NE(refusal_of([&] {
+              (void)find_scene("mesh:" + other + ",pins=v1,rest=" + flat);
+            }).find("other faces or lines"),
+            std::string::npos);
 }
 
 }  // namespace
