@@ -1,5 +1,4 @@
-// A yarn goes on through the edge that lies opposite at a vertex, the one with which it shares no
-// quad and no triangle.
+// A yarn goes on through the edge opposite at a vertex: the two share no quad and no triangle.
 #include <algorithm>
 #include <array>
 #include <map>

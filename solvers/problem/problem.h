@@ -1,5 +1,4 @@
-// The problem that every backend solves: point masses joined by edges that must keep their rest
-// length.
+// The problem of every backend: point masses joined by edges that must keep their rest length.
 //
 // Notation of Goldenthal et al. 2007 throughout: x, v are 3 x n (one column a vertex; m and m/s), W
 // = M^-1 is the diagonal inverse mass matrix (1/kg; 0 = pinned), l_k is the rest length of
