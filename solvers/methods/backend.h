@@ -56,9 +56,11 @@ struct BackendOptions {
   const State* start = nullptr;
 
   // What a method's constructor reads, of complete settings.
-  double number(const char* name) const;
-  int count(const char* name) const;
-  const std::string& word(const char* name) const;
+  double number(const char* name) const { return std::get<double>(settings.at(name)); }
+  int count(const char* name) const { return static_cast<int>(number(name)); }
+  const std::string& word(const char* name) const {
+    return std::get<std::string>(settings.at(name));
+  }
 };
 
 // What the harness may turn to make a run keep its strain limit: the limit itself, which the method

@@ -7,7 +7,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -96,12 +95,6 @@ class Problem {
   std::vector<std::size_t> shear_runs_, bending_runs_;
   double shortest_rest_length_ = 0, longest_rest_length_ = 0, total_mass_ = 0;
 };
-
-// A neighbor of a vertex and the edge to it; a vertex lists them in the order of the edges.
-struct Neighbour {
-  int vertex, edge;
-};
-std::vector<std::vector<Neighbour>> neighbours_of(const Problem& problem);
 
 struct State {
   Positions x;      // m

@@ -6,7 +6,6 @@
 // method that treats stretching inside its time stepper derives from Stepper directly.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 
 #include "solvers/problem/contacts.h"
