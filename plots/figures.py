@@ -1,7 +1,5 @@
 #!/usr/bin/python3
-"""Draws the figures of a result file: cost over strain limit and over resolution, each solver at its best step; who is
-fastest within a strain limit and an error; for step sweeps time against error, and the residual that a solver leaves; for a
-stability sweep the matrix of hard cases; for known answers the deviations from them.
+"""Draws the figures of a result file.
 
     plots/figures.py figure4.json --out DIR
 
@@ -38,7 +36,7 @@ FIGURES = [import_module(f"drawings.{name}") for name in (
     "budget",          # which strain a method reaches within a frame's time
     "work_precision",
     "residual",        # Figure 3
-    "hard_cases",
+    "hard_cases",      # of a stability sweep
     "known_answers",
 )]
 

@@ -121,10 +121,9 @@ void check_row(const Backend& row, std::span<const Backend> others) {
   const auto fits = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
   };
-  if (name.empty() || !std::all_of(name.begin(), name.end(), fits))
+  if (name.empty() || !std::ranges::all_of(name, fits))
     throw std::invalid_argument("solver " + quoted(name) + ": a name is made of a-z, 0-9 and _");
-  if (std::any_of(others.begin(), others.end(),
-                  [name](const Backend& b) { return b.name == name; }))
+  if (std::ranges::find(others, name, &Backend::name) != others.end())
     throw std::invalid_argument("there is a solver " + quoted(name) + " already");
   if ((row.make != nullptr) == (row.make_filter != nullptr) || !row.summary)
     throw std::invalid_argument("solver " + quoted(name) +
@@ -164,7 +163,7 @@ void add_backends(std::span<const Backend> rows) {
 
 const Backend* find_backend(std::string_view name) {
   const auto rows = backends();
-  const auto place = std::find_if(rows.begin(), rows.end(), [name](const Backend& b) {
+  const auto place = std::ranges::find_if(rows, [name](const Backend& b) {
     // By its whole name in its published stepper too.
     return b.name == name ||
            (name.find('@') != name.npos && name == pair_name(b.method, b.stepper));

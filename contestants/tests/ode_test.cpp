@@ -33,8 +33,7 @@ TEST(Ode, PassesConvergeToTheFactorization) {
   EXPECT_NEAR(angular_momentum(scene, finer).y(), angular_momentum(scene, scene.start).y(), 1e-2);
 }
 
-// Forces along directions at the start of a step keep the angular momentum, and the corrections of
-// drift along the same do.
+// Forces and corrections of drift along directions at the start of a step keep angular momentum.
 TEST(Ode, NetKeepsSpinning) {
   const Scene scene = spinning_net(4, 2 * std::numbers::pi);
   const State end = run(solver, scene, 1e-3, 500);

@@ -22,11 +22,8 @@ HEADING = 0.22  # inches, above two columns
 
 
 def figures_of(result: Result) -> Figures:
-    figures = []
-    for figure in result.analysis.get("curves", []):
-        name = _name(figure, result.analysis["curves"])
-        figures.append((name, draw, figure, result))
-    return figures
+    curves = result.analysis.get("curves", [])
+    return [(_name(figure, curves), draw, figure, result) for figure in curves]
 
 
 def _name(figure: Json, all_figures: list[Json]) -> str:

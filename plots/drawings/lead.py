@@ -1,6 +1,5 @@
 """What the lead is due to: at each strain limit, within the headline's error, how many times as long the leader's method takes in its
-published time stepper (the stepper's share), and how many times as long the next method takes in the leader's stepper (the method's
-share)."""
+published time stepper (the stepper's share), and the next method in the leader's stepper (the method's share)."""
 
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, NullLocator

@@ -29,7 +29,7 @@ def figures_of(result: Result) -> Figures:
 def _tightest(sweep: StepSweep, solver: str) -> float | None:
     """The tightest strain limit at which there is a line to draw: two steps with something left."""
     return min((limit for limit, by_step in sweep.residuals[solver].items()
-                if sum(_mean(series, 1) > 0 and _mean(series, 2) > 0 for series in by_step.values()) > 1), default=None)
+                if sum(np.all(np.mean(series, axis=0)[1:] > 0) for series in by_step.values()) > 1), default=None)
 
 
 def draw(sweep: StepSweep, result: Result, solver: str, limit: float) -> Figure:
@@ -65,18 +65,14 @@ def _draw_over_time(axes: Axes, by_step: ByStep, color: str) -> None:
 
 def _draw_over_step(axes: Axes, by_step: ByStep, color: str) -> None:
     steps = sorted(by_step)
-    means = [[_mean(by_step[step], column) for step in steps] for column in (1, 2)]
-    log_log(axes, steps, [value for values in means for value in values if value > 0])
+    means = np.array([np.mean(by_step[step], axis=0)[1:] for step in steps])
+    log_log(axes, steps, means[means > 0])
     steps_on_x(axes, steps)
-    for values, marker, dashes, name in zip(means, "os", ((3, 1.5), ()), ("first iteration", "last iteration")):
-        x, y = np.array([(step, value) for step, value in zip(steps, values) if value > 0]).T
+    for values, marker, dashes, name in zip(means.T, "os", ((3, 1.5), ()), ("first iteration", "last iteration")):
+        x, y = np.array(steps)[values > 0], values[values > 0]
         slope, offset = np.polyfit(np.log(x), np.log(y), 1)
         axes.plot(x, y, marker, color=color, markersize=5, label=f"{name}: slope {slope:.2f}",
                   markerfacecolor=color if not dashes else "white")
         axes.plot(x, np.exp(offset) * x**slope, color=GREY, linewidth=0.8, linestyle=(0, dashes) if dashes else "-")
     axes.set_xlabel("time step (s)")
     axes.legend(frameon=False, fontsize=8, loc="upper left")
-
-
-def _mean(series: Series, column: int) -> float:
-    return sum(row[column] for row in series) / len(series)

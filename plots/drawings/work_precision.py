@@ -1,5 +1,4 @@
-"""Time against error: one curve a solver through its cheapest runs at any step and limit, all others as dots, the front of
-all solvers underneath."""
+"""Time against error: one curve a solver through its cheapest runs at any step and limit, others as dots, the front of all underneath."""
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure

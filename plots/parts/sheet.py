@@ -1,5 +1,4 @@
-"""A sheet that panels are placed on by inches, with title, warnings, caption and legend, and the words around a figure: what was
-measured, where, and how."""
+"""A sheet that panels are placed on by inches, with title, warnings, caption and legend; and the words around a figure."""
 
 from dataclasses import dataclass
 

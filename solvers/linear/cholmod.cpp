@@ -1,5 +1,4 @@
-// CHOLMOD's simplicial and supernodal Cholesky (Chen, Davis, Hager and Rajamanickam 2008) on a
-// matrix in elimination order.
+// CHOLMOD's simplicial and supernodal Cholesky (Chen et al. 2008) on a matrix in elimination order.
 #include <algorithm>
 #include <cmath>
 #include <memory>

@@ -9,8 +9,7 @@
 
 namespace inextensible {
 
-// The pattern with these values as CHOLMOD's matrix; both must outlive it. values null: the pattern
-// alone.
+// The pattern with these values, if any, as CHOLMOD's matrix; both must outlive it.
 inline cholmod_sparse cholmod_view(const SymmetricPattern& pattern, double* values) {
   cholmod_sparse matrix{};
   matrix.nrow = matrix.ncol = pattern.n;

@@ -17,8 +17,7 @@ using Distance = std::ptrdiff_t;
 
 constexpr int panel = 8;   // columns eliminated at once
 constexpr int target = 4;  // columns updated at once
-// Single precision computes a pivot to about seven digits of its diagonal entry: what is less than
-// this of it says nothing.
+// Single precision computes a pivot to about seven digits of its diagonal entry; less says nothing.
 template <class Real>
 constexpr double least_trusted_pivot = sizeof(Real) == sizeof(float) ? 1e-5 : 0;
 
@@ -99,9 +98,8 @@ bool eliminate(Real* l, Distance ld, int n, const Real* bound, Real* pivots) {
   return true;
 }
 
-// J columns of C less those of P D P^T, from row j on, where the first of them is column j; P is n
-// x K. With `begin` C is not read: it begins as zero. Entries above the diagonal are written too,
-// and never read.
+// J columns of C less those of P D P^T, from row j on, the first of them column j; P is n x K. With
+// `begin` C is not read: it begins as zero. Entries above the diagonal are written, never read.
 template <int K, int J, bool begin, class Real>
 void subtract_columns(const Real* p, Distance ld_p, const Real* d, int n, int j, Real* c,
                       Distance ld_c) {
@@ -215,8 +213,7 @@ void substitute_forward(const Real* l, Distance ld, int n, Real* w) {
   }
 }
 
-// K columns of back substitution: the rows below, single numbers several at once, then the
-// triangle.
+// K columns of back substitution: the rows below, as above, then the triangle.
 template <int K, class X, class Real>
 void substitute_back(const Real* l, Distance ld, int n, Real* w) {
   constexpr int width = std::is_same_v<X, Real> ? 1 : 4;
@@ -280,14 +277,8 @@ struct Analysis : CholmodAnalysis {
     common.supernodal = CHOLMOD_SUPERNODAL;
     // Supernodes are merged less than CHOLMOD does for its BLAS calls: short loops cost less here,
     // and every zero stored is read again in solve().
-    const struct {
-      std::size_t columns;
-      double zeros;
-    } relaxed[3] = {{4, 0.5}, {8, 0.1}, {16, 0.02}};
-    for (int i = 0; i < 3; ++i) {
-      common.nrelax[i] = relaxed[i].columns;
-      common.zrelax[i] = relaxed[i].zeros;
-    }
+    std::ranges::copy(std::array<std::size_t, 3>{4, 8, 16}, common.nrelax);
+    std::ranges::copy(std::array{0.5, 0.1, 0.02}, common.zrelax);
     analyze(pattern);
   }
 };

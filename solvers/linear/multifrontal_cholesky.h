@@ -5,8 +5,7 @@
 // Columns of L with (nearly) the same rows below form a supernode. Its front is a dense lower
 // trapezoid over those rows: the entries of A in its columns, plus what its children in the
 // elimination tree leave over. The columns are eliminated by dense steps; what that subtracts from
-// the rows below, with what the children leave over there, is the front's update matrix, for its
-// parent.
+// the rows below, with what the children leave there, is its update matrix, for the parent.
 //
 // The constructor lays out supernodes and their rows (CHOLMOD's analysis), and the place of every
 // entry of A and every row of an update matrix in its front. Update matrices lie on two stacks, for
@@ -24,27 +23,23 @@
 
 namespace inextensible {
 
-// Real: double, or float where seven digits are enough: half the memory, and twice the numbers an
-// instruction.
+// Real: double, or float where seven digits do: half the memory, twice the numbers an instruction.
 template <class Real>
 class MultifrontalCholesky final : public SpdSolver {
  public:
   // Reads the lower triangle, in elimination order, postordered (fill_reducing_order). Throws
-  // std::invalid_argument for the upper one, std::bad_alloc if CHOLMOD's analysis runs out of
-  // memory.
+  // std::invalid_argument for the upper one, std::bad_alloc if CHOLMOD runs out of memory.
   explicit MultifrontalCholesky(SymmetricPattern pattern);
 
   bool factor() override;
   void solve(double* rhs) override;
   void solve_coordinates(Eigen::Matrix4Xd& rhs) override;
   double reciprocal_condition() const override;
-  // Those of L itself; what is stored is about a third more, for whole groups of rows and merged
-  // supernodes.
+  // Those of L itself; a third more is stored, for whole groups of rows and merged supernodes.
   double factor_nonzeros() const override { return nonzeros_; }
   double factor_flops() const override { return flops_; }
-  // From the last successful factorization: the smallest pivot over the diagonal entry that it came
-  // from. Unlike reciprocal_condition() it does not see how rows are scaled, as the solve's
-  // accuracy does not.
+  // From the last successful factorization: the smallest pivot over its diagonal entry. Unlike
+  // reciprocal_condition() it does not see how rows are scaled, as the solve's accuracy does not.
   double least_relative_pivot() const;
 
  private:

@@ -30,15 +30,13 @@ class DirectSolver {
   std::vector<double> values_;
 };
 
-// For symmetric positive definite matrices. They are factored in their own order; permute them
-// first (fill_reducing_order). factor() is false for a pivot of L D L^T that is not above
-// least_pivot times the diagonal entry that it came from. (The supernodal code takes any positive
-// pivot.)
+// For symmetric positive definite matrices. Factored in their own order: permute them first
+// (fill_reducing_order). factor() is false for a pivot of L D L^T that is not above least_pivot
+// times the diagonal entry that it came from. (The supernodal code takes any positive pivot.)
 class SpdSolver : public DirectSolver {
  public:
   explicit SpdSolver(int entries = 0) : DirectSolver(entries) {}
-  // 0 (the default) takes every positive pivot; 1e-10 refuses matrices in which ten digits are
-  // lost.
+  // 0, the default, takes all positive pivots; 1e-10 refuses matrices in which ten digits are lost.
   void set_least_pivot(double relative) { least_pivot_ = relative; }
   // Three right-hand sides at once, the coordinates of a vertex in each column; its fourth number
   // means nothing.

@@ -1,15 +1,13 @@
-// L D L^T of a symmetric tridiagonal matrix (Golub and Van Loan, Matrix Computations,
-// section 4.3.6): O(n), no pivoting. Every pivot waits for the division of the one before it: some
-// twenty cycles a row. So rows are eliminated from both ends at once, two such chains side by side,
-// and the row in the middle last (twisted: van der Vorst 1987). This is L D L^T of the matrix with
-// its rows in another order, hence as stable. Loops: one over pairs of rows to factor, two to
-// solve.
+// L D L^T of a symmetric tridiagonal matrix (Golub and Van Loan, Matrix Computations, section
+// 4.3.6): O(n), no pivoting. Every pivot waits for the division of the one before it: some twenty
+// cycles a row. So rows are eliminated from both ends at once, two such chains side by side, and
+// the row in the middle last (twisted: van der Vorst 1987). This is L D L^T with the rows in
+// another order, hence as stable. Loops: one over pairs of rows to factor, two to solve.
 //
 // The block solver is the same with 3 x 3 blocks for numbers: the springs of a chain, a rope, a
 // hair. Let A be a row's diagonal block less what it has lost to rows eliminated before it, and B
 // its coupling to the next row. With A = L D L^T and Z = D^-1 L^-1 B the next row loses B^T A^-1 B
-// = Z^T D Z. Blocks are spelled out as numbers: as arrays they travel through memory, which takes
-// three times as long (measured).
+// = Z^T D Z. Blocks are spelled out as numbers: as arrays they take three times as long (measured).
 #include <algorithm>
 #include <memory>
 #include <stdexcept>
@@ -120,9 +118,8 @@ SymmetricBlock operator+(const SymmetricBlock& a, const SymmetricBlock& b) {
   return {a.xx + b.xx, a.xy + b.xy, a.yy + b.yy, a.xz + b.xz, a.yz + b.yz, a.zz + b.zz};
 }
 
-// Among the values, row 0 has the 6 numbers of its diagonal block's upper triangle, and every other
-// row 15, three columns of 4, 5 and 6: a column of the coupling to the row before, then one of the
-// triangle.
+// Among the values, row 0 has the 6 numbers of its diagonal block's upper triangle, every other row
+// three columns of 4, 5 and 6: one of the coupling to the row before, then one of the triangle.
 const double* row_values(const double* values, std::size_t row) { return values + 15 * row - 9; }
 
 SymmetricBlock diagonal(const double* values, std::size_t row) {

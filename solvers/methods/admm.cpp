@@ -17,7 +17,6 @@
 // over edges, an iteration.
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "solvers/methods/rows.h"
 #include "solvers/systems/constraint_system.h"

@@ -49,16 +49,6 @@ bool Range::contains(double number) const {
   return open ? number > least && number < largest : number >= least && number <= largest;
 }
 
-double BackendOptions::number(const char* name) const {
-  return std::get<double>(settings.at(name));
-}
-
-int BackendOptions::count(const char* name) const { return static_cast<int>(number(name)); }
-
-const std::string& BackendOptions::word(const char* name) const {
-  return std::get<std::string>(settings.at(name));
-}
-
 Settings complete_settings(const Backend& backend, const Settings& given) {
   Settings all;
   for (const SettingInfo& info : backend.settings) {

@@ -52,14 +52,15 @@ struct BackendOptions {
   double strain_limit = 0.01;  // largest |strain| permitted, > 0
   std::uint64_t seed = 1;      // of methods that draw random numbers
   Settings settings = {};      // the backend's own; missing ones take their default
-  // Where the steps will begin, for methods whose set-up needs positions; null where that is not
-  // known. Valid during `make` only.
+  // Where the steps will begin, for set-ups that need positions, or null. Valid during `make` only.
   const State* start = nullptr;
 
   // What a method's constructor reads, of complete settings.
-  double number(const char* name) const;
-  int count(const char* name) const;
-  const std::string& word(const char* name) const;
+  double number(const char* name) const { return std::get<double>(settings.at(name)); }
+  int count(const char* name) const { return static_cast<int>(number(name)); }
+  const std::string& word(const char* name) const {
+    return std::get<std::string>(settings.at(name));
+  }
 };
 
 // What the harness may turn to make a run keep its strain limit: the limit itself, which the method
@@ -101,14 +102,12 @@ struct Backend {
   Origin origin = Origin::elsewhere;
   const char* label = "";   // in figures; empty: the name
   const char* family = "";  // the method whose colour it shares in figures; empty: its own
-  // Another method that this one is on a chain, step for step; empty: none. Suites leave it out
-  // there.
+  // The method that this one is on a chain, step for step, where suites leave it out; empty: none.
   const char* same_on_chains = "";
   bool shows_iterates = false;  // Stepper::observe sees the iterates and multipliers of each step
   // What the method can do with a problem; make_stepper refuses those that have more.
   bool takes_shear = true, takes_collider = true;
-  // Bending and drag are forces like gravity to a velocity filter, and part of the energy to
-  // others.
+  // To a velocity filter bending and drag are forces like gravity, to others part of the energy.
   bool takes_bending = true, takes_drag = true, takes_implicit_forces = true;
   Velocities velocities = Velocities::half_step;
   // Whether only what acts from outside changes linear momentum, and a step's forces act along

@@ -5,8 +5,7 @@
 //
 // Coloring. Edges that leave one lane by one distance are of one kind. A kind that is a matching
 // takes the first color that all of it fits, larger kinds first; other edges take theirs one by
-// one. That makes four colors on cloth and two on a chain; more colors cost nothing, short blocks
-// do.
+// one. That makes four colors on cloth, two on a chain; more cost nothing, short blocks do.
 //
 // Blocks. In a kind, runs of consecutive places become blocks, across gaps of up to `bridge`. Edges
 // outside of runs are listed, in one more block of their color.

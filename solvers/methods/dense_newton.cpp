@@ -81,8 +81,7 @@ class DenseNewton final : public VelocityFilter {
       ++work.assemblies;
       ++work.factorizations;
       ++work.back_solves;
-      // A step may not move a vertex by more than a quarter of an edge: slow, but it stays with the
-      // nearest solution.
+      // A vertex moves by a quarter of an edge at most: slow, but near the closest solution.
       const double longest = step.head(n3).cwiseAbs().maxCoeff();
       const double scale = std::min(1.0, 0.25 * problem_.shortest_rest_length() / longest);
       x += scale * Eigen::Map<const Positions>(step.data(), 3, x.cols());

@@ -2,8 +2,7 @@
 // constraint manifold, line by line. With mu = h^2 dlambda the step h drops out of equations 5 and
 // 7:
 //   (J W J^T) mu = C(x_j),   x_{j+1} = x_j - W J^T mu,   J = J(x_j).
-// Loops: one pass over edges, one assembly, one factorization, one solve and one pass over edges an
-// iteration.
+// Loops: two passes over edges, one assembly, one factorization and one solve an iteration.
 //
 // Where J W J^T is singular or nearly so (a row pulled straight between two pins, Q3) that step
 // does not exist or overshoots. When several iterations have not lowered |C|^2, or one has raised
@@ -108,8 +107,7 @@ class FastProjection final : public VelocityFilter {
 
  private:
   // C~(x) for this target to mu_, the gradient of C to u_; that of the middle of the step makes of
-  // the iteration Newton's with J(m) W J(m)^T for J(x_j) W J(m)^T. Returns whether x is
-  // permissible.
+  // the iteration Newton's with J(m) W J(m)^T for J(x_j) W J(m)^T. Whether x is permissible.
   bool linearize(double target, const Positions& x) {
     const bool permissible = system_.edges().linearize(x, u_, mu_, target);
     if (along_ == Along::middle) to_middle(u_start_, u_);

@@ -48,8 +48,7 @@ std::unique_ptr<KktSolver> make_kkt_solver(std::string_view name, const Problem&
 
 // The active set of contacts around an equation solver (Nocedal and Wright 2006, section 16.5).
 // Vertices that planes hold stay on them while positions are solved for. Then a plane that would
-// have to pull releases its vertex, one that a vertex went through holds it, and the rest is solved
-// for again.
+// pull releases its vertex, one that was crossed holds it, and the rest is solved for again.
 class ActiveContacts {
  public:
   explicit ActiveContacts(const Problem& problem) {
@@ -252,8 +251,7 @@ class Icd final : public VelocityFilter {
         return refuse(Status::singular, j, edges_, trial_, "the Newton matrix is singular");
       }
       if (!line_search(work)) {
-        // Once more with the convex matrix, from the same place; evaluate() restores what the
-        // search overwrote.
+        // Once more with the convex matrix; evaluate() restores what the search overwrote.
         const bool was_convex = kkt_->convexified();
         trial_ = x0_ + dx_;
         trial_mu_ = mu_;

@@ -2,8 +2,7 @@
 // springs, as the minimum of an energy (spring_energy.h).
 //
 // Edge k has stiffness EA / l_k, so strain = tension / EA at any resolution. The method has no
-// strain limit of its own: EA controls the strain, and the harness finds the one that keeps a run
-// within the limit.
+// strain limit of its own: the harness finds the EA that keeps a run within the limit.
 //
 // Newton with a positive definite matrix always descends; backtracking on E. Three things make it
 // cheap without changing E, its gradient, the descent test or the criterion to stop. (1) Newton
@@ -25,8 +24,7 @@ constexpr double held = 1e-300;  // m: a push that says no more than that
 constexpr int halving_limit = 30;
 constexpr double armijo_fraction = 1e-4;
 constexpr double rounding = 1e-14;
-// What a step with an old factorization must shrink to, times the last. The error it leaves is then
-// no more than the step itself.
+// What a step with an old factorization must shrink to, times the last: it then bounds its error.
 constexpr double fast_convergence = 0.5;
 
 class ImplicitSprings final : public Stepper {
@@ -105,8 +103,7 @@ class ImplicitSprings final : public Stepper {
       }
       const double next = energy_.value(trial_);
       count_evaluations();
-      // Near the minimum the decrease drowns in rounding: a step below the tolerance is then taken
-      // as it is.
+      // Near the minimum the decrease drowns in rounding: a step below the tolerance is taken.
       if (next <= current + armijo_fraction * scale * slope || longest <= step_tolerance_) {
         current = next;
         return halvings == 0 ? Search::full : Search::shortened;

@@ -11,7 +11,6 @@
 // The equations have spurious solutions far away; the closest point of the manifold is at most
 // twice as far from x^n (on it) as x0 is, so what is farther, allowing for slack, is refused.
 // Loops: one assembly and factorization a step, one solve and two passes over edges an iteration.
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -187,9 +186,8 @@ class Shake final : public VelocityFilter {
 // symmetric, hence without damping:
 //   x^{n+1} = x^n + h v^n + h^2/2 (a(x^n) - W J(x^n)^T lambda)   with C(x^{n+1}) = 0  (SHAKE),
 //   v^{n+1} = (x^{n+1} - x^n)/h + h/2 a(x^{n+1}) - W J(x^{n+1})^T nu   with J(x^{n+1}) v^{n+1} = 0.
-// The matrix of the second line is the one that SHAKE needs in the next step: one factorization and
-// two solves a step. Implicit forces are taken in the middle of the step in both lines (Stern and
-// Grinspun 2009).
+// The matrix of the second line is SHAKE's in the next step: one factorization and two solves a
+// step. Both lines take implicit forces in the middle of the step (Stern and Grinspun 2009).
 class Rattle final : public Stepper {
  public:
   Rattle(std::shared_ptr<const Problem> problem, const BackendOptions& options)

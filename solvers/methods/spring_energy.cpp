@@ -167,8 +167,7 @@ inline void SpringEnergy::add_block(const Spring& s, const std::array<double, 3>
 }
 
 // A held vertex moves within its plane (the filter S = I - n n^T of Baraff and Witkin 1998): its
-// gradient loses what leads along n, and so does the step, by a stiffness along n that leaves next
-// to nothing of it.
+// gradient loses what leads along n, and the step almost all of that, by a stiffness along n.
 void SpringEnergy::hold_in_planes(const Contacts& contacts, bool matrix) {
   const Contacts::Timing measured = contacts.timing();
   double* value = matrix_.solver->values();

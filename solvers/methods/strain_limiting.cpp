@@ -2,7 +2,6 @@
 //
 // Edges within the limit are left alone (Provot 1995); others are brought to the target strain
 // along themselves. Both ends move, shared by inverse mass, so that momentum is kept.
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -128,8 +127,7 @@ class GaussSeidel final : public VelocityFilter {
   std::uint64_t random_;  // SplitMix64 state
 };
 
-// Passes over colored edges until one, which has seen every edge in its final place, finds nothing
-// to correct.
+// Passes over colored edges until one, which sees all edges in their final places, corrects none.
 class PassLimiter final : public VelocityFilter {
  public:
   PassLimiter(const Problem& problem, const BackendOptions& options, Along along,

@@ -1,6 +1,5 @@
 // Passes of strain corrections over colored edges, for jacobi, gauss_seidel_colored, pbd_substeps
-// and the projections with passes. They are made in single precision, on displacements from a base
-// that is kept in double.
+// and the projections with passes: in single precision, on displacements from a base in double.
 #pragma once
 
 #include <cmath>
@@ -16,8 +15,7 @@ namespace inextensible {
 // Which edges are corrected, and what to, in q = |d|^2 / l^2 and |d| / l.
 struct StrainBand {
   // target: of the strain limit, 0 to 1. The band is a few roundings narrower than what is
-  // permissible, so that no rounding comes between a pass that finds nothing to correct and the
-  // check.
+  // permissible, so that none comes between a pass that corrects nothing and the check.
   StrainBand(double strain_limit, double target);
 
   bool violated(double q) const {  // true on NaN
@@ -37,8 +35,7 @@ template <class Real>
 }
 
 // The planes of a step's contacts, side by side with the places of colored edges: passes settle
-// them in vectors, without looking up a vertex. Places without a contact have a plane of no normal,
-// which moves nothing.
+// them in vectors, without looking up a vertex. Elsewhere the normal is 0, which moves nothing.
 class PlacedContacts {
  public:
   // contact: whether there may be contacts at all; else nothing is allocated.
@@ -69,8 +66,7 @@ class PlacedContacts {
 
 class StrainPasses {
  public:
-  // A correction moves the ends of edge k by share_a[k] and share_b[k] of what it takes to bring
-  // the edge to the target.
+  // A correction moves the ends of edge k by share_a[k] and share_b[k] of its way to the target.
   StrainPasses(const Problem& problem, const StrainBand& band, const std::vector<double>& share_a,
                const std::vector<double>& share_b);
 
@@ -95,8 +91,7 @@ class StrainPasses {
   // Normals of planes that hold their vertex, by place, zero elsewhere; null: no contacts.
   const ColoredEdges::Places* held_normals();
 
-  // One pass; returns how many edges it corrected. An edge of no length has no direction to be
-  // corrected along and counts as none.
+  // One pass; returns how many edges it corrected. One of no length has no direction and is none.
   enum class Order {
     in_turn,  // in the order of edges(), each from where the last one left its ends
     at_once   // all from the same positions; the corrections are summed

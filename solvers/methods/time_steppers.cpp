@@ -162,8 +162,7 @@ Made midpoint(Shared problem, const Backend& method, const BackendOptions& optio
 std::span<const TimeStepper> time_steppers() {
   static const std::vector<TimeStepper> all{
       {"backward_euler", backward_euler},
-      // Symplectic where forces act along the start of the step. With velocities of half steps it
-      // is the arithmetic of backward_euler.
+      // Symplectic where forces act along the start; by half-step velocities it is backward_euler.
       {"verlet", backward_euler, Origin::paper, "Verlet 1967"},
       {"bdf2", bdf2, Origin::literature, "Choi and Ko 2002; English and Bridson 2008", "in BDF2",
        Velocities::whole_step},

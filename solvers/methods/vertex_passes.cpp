@@ -38,8 +38,7 @@ struct VertexPasses::Ends {
         }
       }
     }
-    // The first color that no neighbour has, vertex after vertex: two colors on a woven net, four
-    // with its shear springs.
+    // The first color that no neighbour has: two colors on a woven net, four with shear springs.
     std::vector<char> taken;
     for (std::size_t v = 0; v < color.size(); ++v) {
       if (problem.inverse_mass()[v] == 0) continue;

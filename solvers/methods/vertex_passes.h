@@ -1,7 +1,6 @@
 // Visits of all vertices in colors, each moved alone to the minimum of its energy's quadratic
-// model: what vertex block descent (Chen, Liu, Yang and Yuksel 2024) and its augmented
-// Lagrangian form share. Vertices of one color share no spring and no bending stencil, and are
-// visited side by side.
+// model: what vertex block descent (Chen, Liu, Yang and Yuksel 2024) and its augmented Lagrangian
+// form share. Vertices of a color, visited side by side, share no spring or bending stencil.
 #pragma once
 
 #include <Eigen/Core>

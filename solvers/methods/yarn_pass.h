@@ -24,8 +24,7 @@ std::vector<Yarn> yarns_of(const Problem& problem);
 class YarnPass {
  public:
   // Links strained beyond `target` of the limit are brought to it, in a yarn that has one beyond
-  // the limit. `places`: where vertices are in the positions that project() takes; they
-  // outlive this.
+  // the limit. `places` outlive this: where vertices are in the positions of project().
   YarnPass(const Problem& problem, double strain_limit, double target, const ColoredEdges& places);
 
   // One step of Newton's method for every yarn, color after color. Returns how many links were
@@ -35,10 +34,9 @@ class YarnPass {
   std::int64_t project(ColoredEdges::Places& x, const ColoredEdges::Places* normals,
                        WorkCounters& work);
 
-  // From now on corrections act along the directions that links have in the middle of the step from
-  // x_start (3 x n) to where they are, but for links that have turned by more than 90 degrees. A
-  // pass then is Newton's method with J(m) W J(m)^T for J(x_j) W J(m)^T. Until the first call they
-  // act along the links as they are.
+  // From now on corrections act along links as they are in the middle of the step from x_start (3 x
+  // n), but for those turned by more than 90 degrees. A pass then is Newton's method with J(m) W
+  // J(m)^T for J(x_j) W J(m)^T. Until the first call they act along the links as they are.
   void take_middle_from(const Positions& x_start);
 
   bool crossing() const { return crossing_; }  // whether yarns share vertices

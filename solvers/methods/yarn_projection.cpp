@@ -11,8 +11,7 @@
 // across yarns they travel by passes. A step takes rounds alone, or a projection of the whole after
 // each round: whichever has cost less in the last steps. The other way is tried again after a retry
 // interval, which doubles while it stays more expensive; rounds that have cost twice as much as the
-// other way are broken off. Costs are counted in visits of an edge, not timed, so that runs repeat
-// exactly.
+// other way are broken off. Costs are counted in visits of an edge, so that runs repeat exactly.
 //
 // Loops: three passes over links a yarn, one pass over edges; one assembly, one factorization and
 // one solve a projection of the whole.
@@ -252,8 +251,7 @@ std::unique_ptr<VelocityFilter> make_adaptive(const Problem& problem, const Back
                                           std::make_unique<WholeCloth>(problem, options));
 }
 
-// With targets of 0, over-relaxed passes throw edges to the other side of the band, and runs gain
-// energy.
+// With targets of 0, over-relaxed passes throw edges across the band, and runs gain energy.
 std::vector<SettingInfo> round_settings(const char* target) {
   return {iteration_limit(5000, "rounds a step before it is refused"),
           {"sweeps", 20.0, "colored Gauss-Seidel passes of a round, at most", count_from_zero,

@@ -1,5 +1,4 @@
-// A yarn goes on through the edge that lies opposite at a vertex, the one with which it shares no
-// quad and no triangle.
+// A yarn goes on through the edge opposite at a vertex: the two share no quad and no triangle.
 #include <algorithm>
 #include <array>
 #include <map>
@@ -10,6 +9,10 @@
 namespace inextensible {
 namespace {
 
+// A neighbour of a vertex and the edge to it; a vertex lists them in the order of the edges.
+struct Neighbour {
+  int vertex, edge;
+};
 using Neighbours = std::vector<std::vector<Neighbour>>;
 
 bool joined(const Neighbours& at, int a, int b) {
@@ -51,7 +54,12 @@ std::vector<std::array<int, 2>> continuations(const Problem& problem, const Neig
 }  // namespace
 
 std::vector<Yarn> yarns_of(const Problem& problem) {
-  const Neighbours at = neighbours_of(problem);
+  Neighbours at(problem.vertices());
+  for (int k = 0; k < problem.constraints(); ++k) {
+    const auto [a, b] = problem.edges()[k];
+    at[a].push_back({b, k});
+    at[b].push_back({a, k});
+  }
   const auto next = continuations(problem, at);
   std::vector<bool> used(problem.constraints(), false);
   std::vector<bool> seen(problem.vertices(), false);

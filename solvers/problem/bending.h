@@ -1,9 +1,8 @@
 // Bending as a quadratic energy,
 //   V(x) = 1/2 sum over stencils s of k_s |sum_i c_i x_i|^2,
-// whose gradient is a constant matrix times x. Where edges keep their length a yarn's curvature
-// and a surface's mean curvature normal are linear in x, so this is not a linearization (Bergou,
-// Wardetzky, Harmon, Zorin and Grinspun 2006, "A Quadratic Bending Model for Inextensible
-// Surfaces").
+// whose gradient is a constant matrix times x. Where edges keep their length a yarn's curvature and
+// a surface's mean curvature normal are linear in x, so this is not a linearization (Bergou et al.
+// 2006, "A Quadratic Bending Model for Inextensible Surfaces").
 #pragma once
 
 #include <Eigen/Core>
@@ -19,9 +18,8 @@ struct BendingStencil {
 };
 using Bending = std::vector<BendingStencil>;
 
-// Stencil of a yarn through the vertices a, b, c in links of the lengths l_ab and l_bc (m),
-// with the flexural rigidity EI (N m^2): energy EI / 2 times squared curvature times the length
-// that falls to b.
+// Stencil of a yarn through vertices a, b, c in links of lengths l_ab and l_bc (m), flexural
+// rigidity EI (N m^2): energy EI / 2 times squared curvature times the length that falls to b.
 BendingStencil yarn_bending(int a, int b, int c, double l_ab, double l_bc, double rigidity);
 
 // Isometric bending of a triangle mesh, flat at rest: one stencil an inner edge (Bergou et al.

@@ -4,22 +4,17 @@
 #include <limits>
 
 namespace inextensible {
-namespace {
 
-// A depth that no picture shows and no strain notices, over the shortest rest length; without
-// edges, m.
+// A depth that no picture shows and no strain notices, in shortest rest lengths; without edges, m.
 constexpr double invisible = 1e-5, invisible_point = 1e-9;
 // In shortest rest lengths: a vertex on its plane this far from the obstacle has left it.
 // With less, planes keep changing at the corners of a polygonal obstacle.
 constexpr double margin = 0.5;
-// The same unit, for every vertex: what edges within their limits may be away from the closest
-// point.
+// The same unit, a vertex: what edges within their limits may be away from the closest point.
 constexpr double room = 0.1;
 // Weight of the last step's push by edges in the expected one; less for a vertex that passes
 // several edges in a step. A larger weight lets friction and edges drive each other.
 constexpr double newest = 0.1;
-
-}  // namespace
 
 Contacts::Contacts(const Problem& problem)
     : problem_(problem),

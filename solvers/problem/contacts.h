@@ -1,5 +1,4 @@
-// The contacts of one step: planes that keep vertices out of the obstacle, accumulated pushes, and
-// lagged friction.
+// Contacts of a step: planes that keep vertices out of the obstacle, their pushes, lagged friction.
 //
 // A plane of normal n pushes and never pulls:
 //   push >= 0,  n . x >= offset,  push (n . x - offset) = 0,
@@ -75,11 +74,9 @@ class Contacts {
     return push - before;
   }
 
-  // Takes from displacements d (3 x n, m) what leads through or out of a plane that holds its
-  // vertex.
+  // Takes from displacements d (3 x n, m) what leads through or out of planes that hold vertices.
   void keep_in_planes(Positions& d) const;
-  // Takes from velocities v (3 x n, m/s) of vertices at x what leads them through or out of a plane
-  // that holds them, as it moves.
+  // The same of velocities v (3 x n, m/s) of vertices at x, for planes as they move.
   void keep_on_planes(const Positions& x, Positions& v) const;
 
   // The velocity at the end of a step of the vertex that a contact holds: `mean` over the step,
@@ -101,8 +98,7 @@ class Contacts {
   double distance(const Positions& x) const;
   double slack() const { return slack_; }
 
-  // Adds the seconds until it goes out of scope to measure()'s sum; one inside another adds
-  // nothing.
+  // Adds the seconds of its scope to measure()'s sum; one inside another adds nothing.
   class Timing {
    public:
     explicit Timing(double*& sum)
@@ -142,8 +138,7 @@ class Contacts {
     return normal(contact).dot(x) - contacts_[contact].offset;
   }
 
-  // A snapshot of planes and pushes, for rollback with the positions of that time. Contacts that
-  // were found since are forgotten.
+  // A snapshot for rollback with the positions of that time. Contacts found since are forgotten.
   using Record = std::vector<Contact>;
   void save(Record& record) const;
   void restore(const Record& record);

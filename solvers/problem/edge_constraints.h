@@ -36,8 +36,7 @@ class EdgeConstraints {
   int problem_edge(int k) const { return order_.empty() ? k : order_[k]; }
 
   // u (3 x m) and C (m) at x (3 x n), or how far C lies outside the fraction `target` of the
-  // permissible band, 0 inside. Returns whether the strain of every edge is permissible; false on
-  // NaN.
+  // permissible band, 0 inside. Returns whether every edge is permissible; false on NaN.
   bool linearize(const Positions& x, Eigen::Matrix3Xd& u, Eigen::VectorXd& c,
                  double target = 0) const;
 
@@ -50,8 +49,7 @@ class EdgeConstraints {
   // Whether |strain| <= limit on every edge; leaves early when not. False on NaN.
   bool permissible(const Positions& x) const;
 
-  // The edge (problem's number) of largest |strain|, and that strain; a non-finite edge counts as
-  // infinite.
+  // The edge (problem's number) of largest |strain|, and that; a non-finite one counts as infinite.
   struct Worst {
     int edge = -1;
     double strain = 0;

@@ -44,8 +44,7 @@ void add_springs(const Edge& e, const double* k, const double* r, const double* 
   for (std::size_t i = 0; i < 3 * n; ++i) qb[i] -= fb[i] * d[i];
 }
 
-// Calls add.operator()<n>(i) for stencils i ... i + n - 1 of one run (Problem::shear_runs), which
-// are found side by side.
+// Calls add.operator()<n>(i) for stencils i ... i + n - 1 of one run (Problem::shear_runs).
 template <class Add>
 void for_each_group(const std::vector<std::size_t>& runs, Add add) {
   std::size_t i = 0;
@@ -112,8 +111,7 @@ void unconstrained_step(const Problem& problem, const State& state, double h, Po
 }
 
 double potential_energy(const Problem& problem, const Positions& x) {
-  // Term by term: Eigen's own sums go by the address of what they add up, so that equal runs would
-  // differ by a rounding.
+  // Term by term: Eigen's sums go by addresses, so that equal runs would differ by a rounding.
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
   for (Eigen::Index i = 0; i < x.cols(); ++i) moment += problem.mass()[i] * x.col(i);
   const double energy = -problem.gravity().dot(moment);

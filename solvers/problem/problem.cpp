@@ -177,14 +177,4 @@ void check_state(const Problem& problem, const State& state) {
   check(state.v, "velocity");
 }
 
-std::vector<std::vector<Neighbour>> neighbours_of(const Problem& problem) {
-  std::vector<std::vector<Neighbour>> at(problem.vertices());
-  for (int k = 0; k < problem.constraints(); ++k) {
-    const Edge e = problem.edges()[k];
-    at[e.a].push_back({e.b, k});
-    at[e.b].push_back({e.a, k});
-  }
-  return at;
-}
-
 }  // namespace inextensible

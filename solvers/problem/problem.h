@@ -1,5 +1,4 @@
-// The problem that every backend solves: point masses joined by edges that must keep their rest
-// length.
+// The problem of every backend: point masses joined by edges that must keep their rest length.
 //
 // Notation of Goldenthal et al. 2007 throughout: x, v are 3 x n (one column a vertex; m and m/s), W
 // = M^-1 is the diagonal inverse mass matrix (1/kg; 0 = pinned), l_k is the rest length of
@@ -8,7 +7,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -97,12 +95,6 @@ class Problem {
   std::vector<std::size_t> shear_runs_, bending_runs_;
   double shortest_rest_length_ = 0, longest_rest_length_ = 0, total_mass_ = 0;
 };
-
-// A neighbor of a vertex and the edge to it; a vertex lists them in the order of the edges.
-struct Neighbour {
-  int vertex, edge;
-};
-std::vector<std::vector<Neighbour>> neighbours_of(const Problem& problem);
 
 struct State {
   Positions x;      // m

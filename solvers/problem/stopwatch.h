@@ -7,8 +7,7 @@ namespace inextensible {
 
 class Stopwatch {
  public:
-  // wanted = false: reads no clock and answers 0. A read takes tens of nanoseconds, a short step a
-  // few hundred.
+  // wanted = false: reads no clock, answers 0. A read takes tens of ns, a short step a few hundred.
   explicit Stopwatch(bool wanted) : wanted_(wanted) {
     if (wanted_) last_ = std::chrono::steady_clock::now();
   }

@@ -4,11 +4,8 @@
 #include "solvers/problem/stopwatch.h"
 
 namespace inextensible {
-namespace {
 
 constexpr double largest_growth = 2;  // the formula is stable below 1 + sqrt 2
-
-}  // namespace
 
 Bdf2History::Bdf2History(const Problem& problem) : problem_(problem) {
   for (Positions* p : {&x_, &v_, &x_known_, &v_known_}) p->resize(3, problem.vertices());

@@ -45,8 +45,7 @@ class Bdf2History {
   double h_ = 0;                 // s, of the last step; 0: no history
 };
 
-// A velocity filter inside BDF2 (English and Bridson 2008 take constrained dynamics there this
-// way).
+// A velocity filter inside BDF2 (constrained dynamics in it: English and Bridson 2008).
 //
 //   x^{n+1} = alpha x^n + (1 - alpha) x^{n-1} + beta h v^{n+1},
 //   v^{n+1} = alpha v^n + (1 - alpha) v^{n-1} + beta h a,

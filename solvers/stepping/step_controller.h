@@ -1,5 +1,4 @@
-// Takes any backend through steps that it refuses: halves the step from the untouched state, and
-// doubles it again after successes.
+// Takes any backend through steps that it refuses: halves the step, and doubles it after successes.
 //
 // Steps are largest / 2^k and begin at multiples of themselves, so that every multiple of `largest`
 // is met exactly, whatever happened in between.

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "solvers/problem/forces.h"
 #include "solvers/problem/stopwatch.h"
 
 namespace inextensible {

@@ -6,7 +6,6 @@
 // method that treats stretching inside its time stepper derives from Stepper directly.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 
 #include "solvers/problem/contacts.h"
@@ -18,8 +17,7 @@ namespace inextensible {
 class EdgeConstraints;
 
 // contact: what of the first three goes to friction, to finding contacts and to planes, without the
-// iterations that these cost a method. copy: into an engine's state and out of it; not in the
-// others.
+// iterations that these cost. copy: into an engine's state and out of it; not in the others.
 struct PhaseSeconds {
   double unconstrained = 0, filter = 0, collision = 0, contact = 0, copy = 0;
 };
@@ -28,8 +26,7 @@ struct PhaseSeconds {
 class IterateObserver {
  public:
   virtual ~IterateObserver() = default;
-  // x_j, from the candidate x_0 on, and the multipliers h^2 lambda_j so far, one for each of
-  // `edges`.
+  // x_j, from the candidate x_0 on, and the multipliers h^2 lambda_j so far, one an edge.
   virtual void iterate(const EdgeConstraints& edges, int j, const Positions& x,
                        const Eigen::VectorXd& multipliers) = 0;
 };
@@ -43,8 +40,7 @@ class Stepper {
   Stepper& operator=(const Stepper&) = delete;
 
   // Advances `state` (shapes as the problem's, finite) by h > 0 seconds. On refusal the state is
-  // untouched. Allocates nothing after the first call, but for what the library factorizations do
-  // inside.
+  // untouched. After the first call only library factorizations allocate.
   StepResult advance(State& state, double h);
 
   // Positions of the last accepted step after the inextensibility filter and before the collision

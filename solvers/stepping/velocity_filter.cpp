@@ -1,10 +1,8 @@
 #include "solvers/stepping/velocity_filter.h"
 
-#include "solvers/problem/forces.h"
 #include "solvers/problem/stopwatch.h"
 
 namespace inextensible {
-namespace {
 
 // Limit on rounds. Of a convex obstacle every vertex is found once at most.
 constexpr int most_rounds = 30;
@@ -13,8 +11,6 @@ constexpr int most_rounds = 30;
 // the candidate (triangle inequality). Inexact methods get another factor of 2. What is farther is
 // a spurious solution, and would add energy.
 constexpr double farthest = 4;
-
-}  // namespace
 
 StepResult apply_until_clear(VelocityFilter& filter, Contacts* contacts, const Positions& x_start,
                              double h, Positions& x, WorkCounters& work) {

@@ -9,13 +9,11 @@
 
 namespace inextensible {
 
-// Where a filter's corrections point: along the edges as they are, or along their middles, halfway
-// between the start of the step and now. An edge that has turned by more than 90 degrees is
-// corrected along itself.
+// Where a filter's corrections point: along the edges as they are, or along their middles between
+// the start of the step and now. An edge turned by more than 90 degrees is corrected along itself.
 enum class Along { edges, middle };
 
-// A velocity filter: takes start-of-step and candidate positions, moves the candidate onto the
-// constraint manifold.
+// Takes start-of-step and candidate positions, moves the candidate onto the constraint manifold.
 class VelocityFilter {
  public:
   VelocityFilter() = default;
@@ -36,8 +34,7 @@ class VelocityFilter {
   IterateObserver* observer_ = nullptr;
 };
 
-// Repeats the filter until no vertex is inside the obstacle; contacts are found as they are needed.
-// contacts: null, or begun.
+// Repeats the filter until no vertex is inside the obstacle. contacts: null, or begun.
 StepResult apply_until_clear(VelocityFilter& filter, Contacts* contacts, const Positions& x_start,
                              double h, Positions& x, WorkCounters& work);
 

@@ -11,13 +11,10 @@
 #include "solvers/systems/schur_complement.h"
 
 namespace inextensible {
-namespace {
 
 constexpr double relative_shift = 1e-9;  // of the diagonal
 constexpr double free_fall = 1e-12;      // of accelerations over rest lengths: rounding
 constexpr int most_iterations = 50;      // one or two where A is regular
-
-}  // namespace
 
 Positions constrained_acceleration(const Problem& problem, const State& state) {
   Positions a = Positions::Zero(3, problem.vertices());

@@ -1,5 +1,4 @@
-// The edges of a problem in elimination order with the solver for their J W J^T: what the
-// projection methods share.
+// A problem's edges in elimination order and the solver for their J W J^T: what projections share.
 #pragma once
 
 #include <memory>
@@ -33,8 +32,7 @@ class ConstraintSystem {
 
   double reciprocal_condition() const { return solver_->reciprocal_condition(); }
   const std::string& solver_name() const { return solver_name_; }
-  // Whether J W J^T is taken as tridiagonal: a projection costs no more than some passes over
-  // edges.
+  // Whether J W J^T is tridiagonal: a projection costs no more than some passes over edges.
   bool chain() const { return chain_; }
 
   // Assembles J W J^T at gradients u, its diagonal times 1 + damping, and factors it; false: not
@@ -54,8 +52,7 @@ class ConstraintSystem {
   std::unique_ptr<SpdSolver> solver_;
 };
 
-// A refusal that names the worst edge at x; the status becomes not_finite if that edge's length is
-// not.
+// A refusal that names the worst edge at x; its status is not_finite if that edge's length is not.
 StepResult refuse(Status status, int iterations, const EdgeConstraints& edges, const Positions& x,
                   const char* detail);
 

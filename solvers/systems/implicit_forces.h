@@ -7,8 +7,7 @@
 // takes the place of H: of a spring k I between its ends, of bending the Hessian itself. x0 - y is
 // O(h^2), so that this costs an error of O(h^4) a step; and the step stays stable at any h, for the
 // amplification sqrt(1 / (1 + h^2 L)) of a vibration is below 1 for all H <= L. L is the same for
-// all three coordinates: one sparse symmetric positive definite n x n matrix, factored once for
-// each h.
+// all three coordinates: one sparse positive definite n x n matrix, factored once for each h.
 //
 // Steps short enough for shear at their start take it there, and those short enough for bending
 // take both there, which leaves a diagonal matrix of mass and drag. That is more accurate, and
@@ -43,8 +42,7 @@ class ImplicitForces {
 
   // y (3 x n, m) in, x0 out; w: 3 x n, m/s. Pinned vertices of y stay. h: s, of the step from
   // `start`. scale: s, the h of the formula. Shear and bending are taken at x^n + ahead v^n where
-  // the step is short enough for that. false: the matrix is singular to working precision, or a
-  // number is not finite.
+  // the step is short enough for that. false: a singular matrix, or a number that is not finite.
   bool advance(const State& start, double h, double scale, double ahead, const Positions& w,
                Positions& y, WorkCounters& work);
 

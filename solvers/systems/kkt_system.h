@@ -74,17 +74,15 @@ class KktSolver {
   bool left_to_other_ = false;
 };
 
-// The matrix in fixed pattern, factored:
-// L D L^T without pivoting in a fill-reducing order, of K with a tiny negative diagonal in the
-// lower block, corrected by iterative refinement on K itself. Where refinement does not reach its
-// goal (H indefinite enough to ruin the pivots, or masses that are too unequal) UMFPACK takes over
-// for that matrix.
+// The matrix in fixed pattern, factored: L D L^T without pivoting in a fill-reducing order, of K
+// with a tiny negative diagonal in the lower block, corrected by iterative refinement on K itself.
+// Where refinement does not reach its goal (H indefinite enough to ruin the pivots, or masses too
+// unequal) UMFPACK takes over for that matrix.
 enum class FactoredBy { ldlt_first, umfpack };
 std::unique_ptr<KktSolver> make_kkt_system(const Problem& problem, const EdgeConstraints& edges,
                                            FactoredBy by = FactoredBy::ldlt_first);
 
-// Projected conjugate gradients (Gould, Hribar and Nocedal 2001). edges: best in
-// elimination_order.
+// Projected conjugate gradients (Gould, Hribar, Nocedal 2001). edges: best in elimination_order.
 struct ProjectedCgSettings {
   double tolerance = 0.1;  // of the step, in the norm of the preconditioner
   int max_iterations = 100;

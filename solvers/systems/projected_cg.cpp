@@ -20,8 +20,7 @@
 namespace inextensible {
 namespace {
 
-// Tolerance of solves with J D^-1 J^T: the next Newton step corrects what a projection leaves of J
-// p.
+// Tolerance of solves with J D^-1 J^T: the next Newton step corrects what one leaves of J p.
 constexpr double projection_tolerance = 1e-4;
 
 class ProjectedCg final : public KktSolver {

@@ -3,8 +3,7 @@
 //
 // Entry (k, l) of two edges that share vertices is (sum over shared vertices v of s_kv s_lv w_v)
 // u_k . u_l with s = +1 at an edge's b and -1 at its a. The bracket stays, so it is stored in the
-// order of the matrix's own arrays: assembly is one pass that writes each entry where the
-// factorization reads it.
+// order of the matrix's own arrays: assembly is one pass that writes entries in their places.
 #pragma once
 
 #include "solvers/linear/symmetric_pattern.h"

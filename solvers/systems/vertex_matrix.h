@@ -1,5 +1,4 @@
-// The free vertices of a problem, ordered so that a matrix that couples them factors with little
-// fill, and its solver.
+// A problem's free vertices, ordered for little fill in a matrix that couples them, and its solver.
 #pragma once
 
 #include <memory>

@@ -23,7 +23,7 @@ and that line of that file must then contain the text. Generated blocks end with
 build/release; with --fix `./bench`, which builds it first.
 
 Links between documents and paths in backticks must exist, Markdown files that comments name too. docs/using.md must name every exit
-code. Pictures of results must be of the commits that the results in the tree are of.
+code. docs/results.md must be what its own command makes. Pictures of results must be of the commits that the results in the tree are of.
 """
 
 import functools
@@ -296,6 +296,16 @@ def exit_codes() -> list[str]:
     return [f"docs/using.md: exit codes {sorted(explained)}, the program has {sorted(codes)}"] if codes != explained else []
 
 
+def results_page() -> list[str]:
+    """It is what its own command makes of the committed result files, and short enough to be read."""
+    page = read(ROOT / "docs/results.md")
+    words = re.search(r"^```sh\n\./bench (results .*) --out docs/results\.md\n```$", page, re.MULTILINE)
+    if not words or page.replace(" --out docs/results.md\n", "\n") != output_of(*words[1].split()):
+        return ["docs/results.md is not what its own command makes"]
+    lines = page.count("\n")
+    return [f"docs/results.md has {lines} lines, 300 are to be read"] if lines > 300 else []
+
+
 def pictures() -> list[str]:
     """Pictures are of the commits that their results are of."""
     files = [*(ROOT / "results").glob("*.json")]
@@ -317,7 +327,7 @@ def main() -> int:
         fix()
     errors = [f"{document.relative_to(ROOT)}: {error}" for document in documents()
               for check in (quotes, tables, links, paths) for error in check(document)]
-    errors += named_documents() + exit_codes() + pictures()
+    errors += named_documents() + exit_codes() + results_page() + pictures()
     for error in errors:
         print(error)
     return 1 if errors else 0

@@ -8,7 +8,6 @@
 
 #include "solvers/linear/multifrontal_cholesky.h"
 #include "solvers/linear/spd_solver.h"
-#include "solvers/problem/edge_constraints.h"
 #include "support/random_mesh.h"
 
 namespace inextensible {
@@ -104,8 +103,7 @@ System random_system(const SpdSolverRow& row, std::uint64_t seed) {
     return {row, random_chain(random, rows, block), chain_pattern(rows, block)};
   }
   const auto kind = seed % 4;
-  // The pivots tell the condition of a Schur complement, by which mixed precision accepts a
-  // solution.
+  // Mixed precision goes by pivots, which tell the condition of a Schur complement only.
   const bool meaningless = kind == 2 && row.precision == Precision::full;
   const auto mesh = kind == 0 ? testing::random_graph(random, 40, 25, 3, 1e-4)
                               : testing::random_mesh(random, 5, 7, 2);
@@ -162,8 +160,7 @@ TEST_P(SpdSolvers, SolveForThreeCoordinatesAtOnce) {
   });
 }
 
-// A positive diagonal does not make a matrix positive definite. What is left of a refused matrix
-// must not reach the next one.
+// A positive diagonal is not enough. What is left of a refused matrix must not reach the next one.
 TEST_P(SpdSolvers, RefuseWhatIsNotPositiveDefiniteAndForgetIt) {
   testing::for_seeds(30, [](Random&, std::uint64_t seed) {
     System system = random_system(GetParam(), seed);

@@ -98,16 +98,6 @@ TEST(Admm, KeepsLinearMomentumHoweverEarlyItStops) {
   });
 }
 
-TEST(Admm, FactorsOnceWhateverTheSteps) {
-  Random random(3);
-  const auto mesh = testing::random_mesh(random, 5, 6, 1);
-  const auto stepper = make_stepper("admm", mesh.problem, {1e-3});
-  State state = testing::moving_state(random, mesh, 2);
-  for (const double step : {h, h / 2, h, h / 4}) ASSERT_TRUE(stepper->advance(state, step));
-  EXPECT_EQ(stepper->work().factorizations, 1);
-  EXPECT_EQ(stepper->work().back_solves, 3 * stepper->work().iterations);
-}
-
 // A step ends within the limit; the same step again goes on from its forces, and so they end where
 // an edge is strained by `target` times the limit.
 TEST(Admm, BringsAnEdgeToItsTarget) {
@@ -144,8 +134,7 @@ TEST(AugmentedVbd, KeepsTheMultipliersOfTheLastAcceptedStep) {
   }
 }
 
-// The pin of a hanging rope jumps by two links: with the forces of the step before, passes
-// overflow.
+// The pin of a hanging rope jumps by two links: with the last step's forces, passes overflow.
 TEST(AugmentedVbd, BeginsAgainWhereTheLastForcesOverflow) {
   const testing::HangingRope rope(20, 0.05, 0.05);
   const auto warm = make_stepper("augmented_vbd", rope.problem, {0.01}),

@@ -171,8 +171,7 @@ harness::Trial random_trial(Random& random) {
   trial.step = std::pow(10, uniform(random, -4, -1));
   trial.strain_limit = std::pow(10, uniform(random, -4, -1));
   trial.energy_tolerance = -1;  // what these starts release has no useful bound
-  // Locked graphs have multipliers that cancel; their size is bounded by the pivots that a
-  // factorization accepts.
+  // Locked graphs have multipliers that cancel; accepted pivots bound their size.
   trial.momentum_tolerance = 1e-5;
   static_assert(1e-5 > 1e-16 / ConstraintSystem::least_pivot);
   return trial;
@@ -333,8 +332,7 @@ TEST_P(EveryMethod, SeesNoSteadyMotionThatItShares) {
 }
 
 // Nothing is allocated inside a step after warm-up. Counted at malloc itself, so that Eigen's and
-// the libraries' memory is seen too; UMFPACK, which allocates its numeric object by design, is not
-// among the default solvers tested here.
+// the libraries' memory is seen too; UMFPACK, which allocates by design, is no method's default.
 TEST_P(EveryMethod, AllocatesNothingInsideAStepAfterWarmUp) {
 #if defined(__SANITIZE_ADDRESS__)
   GTEST_SKIP() << "malloc belongs to the sanitizer";

@@ -91,8 +91,7 @@ TEST(FrictionInEveryStepper, StopsASlidingRopeWhereCoulombSays) {
   }
 }
 
-// A vertex is carried round where friction bears its centripetal acceleration, and flung off where
-// not.
+// A vertex is carried round where friction bears its centripetal acceleration, else flung off.
 TEST(Turntable, HoldsWhatFrictionCanHold) {
   constexpr double rate = 4, radius = 0.5, needed = rate * rate * radius / gravity;
   const auto turn = [](double time) {

@@ -41,8 +41,7 @@ TEST(FastProjection, FirstIterationIsIcdsFirstNewtonIteration) {
     const auto mesh = random_mesh(random, 4, 5, 2);
     const Problem& p = *mesh.problem;
     const Positions candidate = testing::perturbed(random, mesh, 0.02);
-    // The loosest limit that one iteration reaches: candidates are off by some 0.03, the first
-    // iterate by its square.
+    // In reach of one iteration: candidates are off by some 0.03, the first iterate by its square.
     const double limit = 0.004;
     ASSERT_FALSE(EdgeConstraints(p, limit).permissible(candidate));
     const Filtered fast("fast_projection", mesh, candidate,
@@ -90,8 +89,7 @@ TEST(FastProjection, PlainOrSmoothedIsTheClosestPointToFirstOrder) {
   }
 }
 
-// Where sweeps pay, they replace projections: some of them after each, all of them if as many as
-// it takes come before.
+// Sweeps replace projections: some of them after each, all if as many as it takes come before.
 TEST(FastProjection, SweepsReplaceProjections) {
   int projections = 0, smoothed_projections = 0;
   for_seeds(meshes, [&](Random& random, std::uint64_t) {
@@ -185,8 +183,7 @@ TEST(Yarns, OfWovenClothAreItsRowsAndColumns) {
   }
 }
 
-// Also on several chains: yarns side by side in the lanes of a vector, of unequal lengths, do not
-// feel each other.
+// Also on several: yarns of unequal lengths, side by side in a vector, do not feel each other.
 TEST(YarnProjection, OnChainsIsFastProjectionOnEach) {
   for_seeds(40, [](Random& random, std::uint64_t seed) {
     std::vector<RandomMesh> chains;

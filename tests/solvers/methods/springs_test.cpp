@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <cmath>
 #include <numbers>
 
 #include "solvers/methods/vertex_passes.h"
@@ -67,8 +66,7 @@ void move(int v, const Problem& problem, const Springs& springs, const Positions
   x.col(v) += hessian.llt().solve(f);
 }
 
-// A row of n vertices has the even ones first, then the odd ones; colors alternate from each end of
-// the row, and start again behind a pin.
+// The even vertices of a row come first, then the odd ones; colors start again behind a pin.
 TEST(VertexPasses, MoveOneVertexAfterTheOtherInColors) {
   for_seeds(8, [](Random& random, std::uint64_t seed) {
     const int n = 2 + static_cast<int>(random() % 40);

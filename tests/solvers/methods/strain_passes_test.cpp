@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <numeric>
 
 #include "solvers/registry.h"
@@ -21,8 +20,7 @@ using testing::Random;
 using testing::RandomMesh;
 using testing::single_rounding;
 
-// What makes the passes fast on woven cloth, numbered row after row as the scenes do: few fillers,
-// and nothing to gather.
+// What makes passes fast on cloth numbered row after row: few fillers, and nothing to gather.
 TEST(ColoredEdges, AreAdjacentOnClothAndChains) {
   Random random(1);
   for (const auto& [rows, columns, colors] : {std::tuple(31, 31, 4), std::tuple(30, 32, 4),
@@ -107,8 +105,7 @@ TEST(StrainPasses, EqualALoopOverEdges) {
   for (const int rays : {2, 15, 16, 17, 64}) expect_passes_by_the_book(random, star(random, rays));
 }
 
-// A corrected edge then lies on the limit, where a rounding decides: it must not be corrected for
-// ever.
+// A corrected edge lies on the limit, where roundings decide: it must not be corrected for ever.
 TEST(StrainLimiting, ConvergesWhereTheTargetIsTheLimit) {
   const auto problem = testing::one_edge(1, 0.3);
   for (const char* solver : {"jacobi", "gauss_seidel", "gauss_seidel_colored"}) {

@@ -1,5 +1,4 @@
-// Bending: energies of shapes whose curvature is known, and forces against the energy's
-// differences.
+// Bending: energies of shapes of known curvature, and forces against the energy's differences.
 #include "solvers/problem/bending.h"
 
 #include <gtest/gtest.h>
@@ -17,8 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// n x n vertices of a flat sheet: equilateral triangles, or squares cut along alternating
-// diagonals.
+// n x n vertices of a flat sheet: equilateral triangles, or squares cut along diagonals in turn.
 struct Sheet {
   Positions x;
   std::vector<std::array<int, 3>> triangles;
@@ -43,8 +41,7 @@ Sheet sheet(int n, bool equilateral) {
   return s;
 }
 
-// The energy of a sheet rolled to a cylinder, its axis turned by `angle`, over that of the
-// continuum.
+// The energy of a sheet rolled to a cylinder, its axis turned by `angle`, over the continuum's.
 double rolled(int n, bool equilateral, double angle) {
   constexpr double radius = 0.8, rigidity = 0.02;
   const Sheet flat = sheet(n, equilateral);

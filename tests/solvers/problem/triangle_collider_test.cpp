@@ -42,8 +42,7 @@ double distance_to_triangle(const Vector3d& a, const Vector3d& b, const Vector3d
   return least;
 }
 
-// Sum of the triangles' solid angles (van Oosterom and Strackee 1983) over 4 pi: 1 inside, 0
-// outside.
+// Sum of solid angles (van Oosterom and Strackee 1983) over 4 pi: 1 inside, 0 outside.
 double winding_number(const TriangleMesh& mesh, const Vector3d& p) {
   double sum = 0;
   for (const auto& t : mesh.triangles) {

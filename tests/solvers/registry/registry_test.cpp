@@ -5,7 +5,6 @@
 
 #include <set>
 
-#include "solvers/linear/spd_solver.h"
 #include "solvers/problem/edge_constraints.h"
 #include "support/random_mesh.h"
 

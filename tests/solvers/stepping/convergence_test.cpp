@@ -103,8 +103,7 @@ INSTANTIATE_TEST_SUITE_P(Pairs, PairOrder,
                          inextensible::names::contestant_name);
 
 // A net that turns without weight, 0.1 to 0.4 rad a step, for 10 rad. The midpoint rule keeps its
-// energy to the third power of the angle a step; directions of the end of the step lose it to the
-// first.
+// energy to the third power of the angle a step; directions of a step's end lose it to the first.
 TEST(Energy, OfATurningNetIsKeptByDirectionsOfTheMiddle) {
   const Scene scene = built_scene("spinning_net", {{"n", 7}});
   const double start = total_energy(*scene.problem, scene.start);
@@ -157,8 +156,7 @@ TEST(Bdf2, KeepsItsOrderWhenTheStepChanges) {
   EXPECT_NEAR(log_log_slope(steps, errors).value, 2, 0.25);
 }
 
-// A body that hits the ground must not bounce off it by a velocity that is extrapolated over the
-// impact.
+// What hits the ground must not bounce off it by a velocity extrapolated over the impact.
 TEST(Bdf2, DoesNotBounceOffACollider) {
   const Scene scene = built_scene("drape", {{"n", 5}, {"side", 0.05}, {"gap", 0.05}, {"shear", 0}});
   const auto stepper = make_stepper("fast_projection@bdf2", scene.problem, {1e-4});

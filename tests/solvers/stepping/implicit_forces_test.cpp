@@ -2,44 +2,36 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
 #include <string>
 
-#include "solvers/problem/bending.h"
+#include "harness/scenes/meshes.h"
 #include "solvers/registry.h"
 
 namespace inextensible {
 namespace {
 
-constexpr double g = 9.81;
+using harness::Scene;
 
-struct Start {
-  std::shared_ptr<const Problem> problem;
-  State state;
-};
+constexpr double g = 9.81;
 
 // A horizontal yarn in n vertices, clamped at the first two, length 1 m from the middle of its
 // first link on; Gamma = rho g L^3 / EI (Romero et al. 2021; Peirce 1930). Its end vertex is half a
 // link's mass, so that every link bears what lies beyond its middle.
-Start cantilever(int n, double gamma) {
+Scene cantilever(int n, double gamma) {
   const double link = 1 / (n - 1.5), density = 0.1, rigidity = density * g / gamma;
-  ProblemParts parts;
+  harness::Draft yarn(n, {{"gravity", g}, {"duration", 15}});
+  ProblemParts& parts = yarn.parts;
   parts.mass.assign(n, density * link);
   parts.mass.back() *= 0.5;
   parts.pinned = {0, 1};
   for (int i = 1; i + 1 < n; ++i) {
-    parts.edges.push_back({i, i + 1});
-    parts.rest_length.push_back(link);
+    yarn.constrain(i, i + 1, link);
     parts.bending.push_back(yarn_bending(i - 1, i, i + 1, link, link, rigidity));
   }
   for (const double m : parts.mass) parts.drag.push_back(6 * m);
   parts.implicit_forces = true;
-  Start start;
-  start.state.x.setZero(3, n);
-  start.state.v.setZero(3, n);
-  for (int i = 0; i < n; ++i) start.state.x(0, i) = link * (i - 0.5);
-  start.problem = std::make_shared<const Problem>(std::move(parts));
-  return start;
+  for (int i = 0; i < n; ++i) yarn.scene.start.x(0, i) = link * (i - 0.5);
+  return finished(std::move(yarn));
 }
 
 void run(Stepper& stepper, State& state, double h, double time) {
@@ -75,61 +67,42 @@ TEST(Cantilever, HangsAsTheHeavyElasticaDoesByEveryRouteThatBendingTakes) {
   for (const auto& [solver, exact, n, h, settings] : cases) {
     SCOPED_TRACE(std::string(solver) + ", Gamma " + std::to_string(exact.gamma) + ", " +
                  std::to_string(n) + " vertices");
-    Start start = cantilever(n, exact.gamma);
-    run(*make_stepper(solver, start.problem, {1e-6, 1, settings}), start.state, h, 15);
-    EXPECT_NEAR(start.state.x(0, n - 1), exact.reach, 0.02 * std::max(exact.reach, exact.drop));
-    EXPECT_NEAR(-start.state.x(1, n - 1), exact.drop, 0.02 * std::max(exact.reach, exact.drop));
-    EXPECT_LT(start.state.v.cwiseAbs().maxCoeff(), 1e-4);
+    const Scene scene = cantilever(n, exact.gamma);
+    State state = scene.start;
+    run(*make_stepper(solver, scene.problem, {1e-6, 1, settings}), state, h, 15);
+    EXPECT_NEAR(state.x(0, n - 1), exact.reach, 0.02 * std::max(exact.reach, exact.drop));
+    EXPECT_NEAR(-state.x(1, n - 1), exact.drop, 0.02 * std::max(exact.reach, exact.drop));
+    EXPECT_LT(state.v.cwiseAbs().maxCoeff(), 1e-4);
   }
 }
 
-// A square of cloth that is pinned at two corners, stiff enough in shear and bending to matter.
-Start cloth(bool implicit) {
-  constexpr int n = 5;  // vertices along a side
-  const double link = 1.0 / (n - 1);
-  ProblemParts parts;
-  parts.mass.assign(n * n, 0.2 / (n * n));
-  parts.drag.assign(n * n, 0.1 / (n * n));
-  parts.pinned = {0, n - 1};
-  parts.shear.emplace();
-  Start start;
-  start.state.x.resize(3, n * n);
-  start.state.v.setZero(3, n * n);
-  const auto at = [](int i, int j) { return i * n + j; };
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j) {
-      start.state.x.col(at(i, j)) << j * link, 0, i * link;
-      for (const auto& [down, right] : {std::pair(0, 1), std::pair(1, 0)}) {
-        if (i + down == n || j + right == n) continue;
-        const int next = at(i + down, j + right);
-        if (i + down > 0) parts.edges.push_back({at(i, j), next});  // no taut row between the pins
-        if (i + 2 * down < n && j + 2 * right < n)
-          parts.bending.push_back(yarn_bending(at(i, j), next, at(i + 2 * down, j + 2 * right),
-                                               link, link, 1e-3 * link));
-      }
-      if (i + 1 == n || j + 1 == n) continue;
-      parts.shear->edges.push_back({at(i, j), at(i + 1, j + 1)});
-      parts.shear->edges.push_back({at(i, j + 1), at(i + 1, j)});
-    }
-  }
-  parts.rest_length.assign(parts.edges.size(), link);
-  parts.shear->rest_length.assign(parts.shear->edges.size(), std::sqrt(2.0) * link);
-  parts.shear->stiffness.assign(parts.shear->edges.size(), 5);
-  parts.implicit_forces = implicit;
-  start.problem = std::make_shared<const Problem>(std::move(parts));
-  return start;
+// A square of cloth, stiff enough in shear and bending to matter, that hangs by two corners: those
+// of a diagonal, between which no row is taut.
+Scene cloth(bool implicit) {
+  harness::Draft square = harness::vertex_square({{"n", 5},
+                                                  {"side", 1},
+                                                  {"density", 0.2},
+                                                  {"gravity", g},
+                                                  {"shear", 5},
+                                                  {"bending", 1e-3},
+                                                  {"drag", 0.1},
+                                                  {"duration", 1}},
+                                                 0);
+  square.parts.pinned = {0, 24};
+  square.parts.implicit_forces = implicit;
+  return finished(std::move(square));
 }
 
-Positions after(const char* solver, const Start& start, double h, double time,
+Positions after(const char* solver, const Scene& scene, double h, double time,
                 const Settings& settings = {}) {
-  const auto stepper = make_stepper(solver, start.problem, {1e-9, 1, settings});
-  State state = start.state;
+  const auto stepper = make_stepper(solver, scene.problem, {1e-9, 1, settings});
+  State state = scene.start;
   run(*stepper, state, h, time);
   return state.x;
 }
 
 TEST(ImplicitForces, HaveTheOrderOfTheirStepper) {
-  const Start start = cloth(true);
+  const Scene scene = cloth(true);
   const Settings conserving{{"spectral_radius", 1.0}};
   const struct {
     const char* solver;
@@ -140,9 +113,9 @@ TEST(ImplicitForces, HaveTheOrderOfTheirStepper) {
                {"fast_projection@midpoint", 2, conserving},
                {"rattle", 2, {}}};
   for (const auto& [solver, order, settings] : cases) {
-    const Positions a = after(solver, start, 1.0 / 800, 0.2, settings),
-                    b = after(solver, start, 1.0 / 1600, 0.2, settings),
-                    c = after(solver, start, 1.0 / 3200, 0.2, settings);
+    const Positions a = after(solver, scene, 1.0 / 800, 0.2, settings),
+                    b = after(solver, scene, 1.0 / 1600, 0.2, settings),
+                    c = after(solver, scene, 1.0 / 3200, 0.2, settings);
     EXPECT_NEAR(std::log2((a - b).norm() / (b - c).norm()), order, 0.25) << solver;
   }
 }
@@ -156,7 +129,7 @@ TEST(ImplicitForces, TendToTheSameMotionAsExplicitOnes) {
     const Positions rattle = after("rattle", cloth(implicit), h, time);
     EXPECT_LT((x - rattle).cwiseAbs().maxCoeff(), 3e-5) << implicit;
   }
-  EXPECT_GT((x - cloth(true).state.x).cwiseAbs().maxCoeff(), 0.05) << "hardly anything moved";
+  EXPECT_GT((x - cloth(true).start.x).cwiseAbs().maxCoeff(), 0.05) << "hardly anything moved";
 }
 
 // A vertex of 0.5 kg on a spring of length 1 that is stretched to 1.1, after one step of 0.05 s.
@@ -175,8 +148,7 @@ double after_a_step(const char* solver, double stiffness, double speed, const Se
   return state.x(0, 1) - 1;
 }
 
-// The step is that of backward Euler, to the last digits; the midpoint rule leaves -rho of a
-// vibration that is fast for its step.
+// Backward Euler's step, to the last digits; the midpoint rule leaves -rho of a fast vibration.
 TEST(ImplicitForces, DampASpringAsTheirStepperDoes) {
   const double h = 0.05, flight = 0.1 + h * 0.3;
   EXPECT_NEAR(after_a_step("fast_projection", 2000, 0.3, {}), flight / (1 + h * h * 2000 / 0.5),

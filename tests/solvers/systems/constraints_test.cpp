@@ -1,5 +1,4 @@
-// C, its gradient, J W J^T with and without contacts, and SHAKE's matrix, each against a slow
-// second route.
+// C, its gradient, J W J^T with and without contacts, and SHAKE's matrix, by slow second routes.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
