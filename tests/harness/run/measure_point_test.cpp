@@ -154,16 +154,15 @@ TEST(EnergyRise, FailsAShakingCloth) {
 
 // Samples are 1, 2, 3, ... and looks take what a list says, in ms; the first ten are quiet ones.
 TEST(QuietSamples, ADisturbedLookOnEitherSideTakesItAgainUpToThreeTimes) {
-  struct Row {
+  const struct {
     const char* what;
     std::vector<double> looks;
     int dropped, sample, retaken;
-  };
-  for (const auto& [what, looks, dropped, sample, retaken] :
-       {Row{"before", {1.06, 1.0, 1.0}, 0, 2, 1},
-        Row{"after, which is before the next one, too", {1.0, 1.06, 1.0, 1.0}, 0, 3, 2},
-        Row{"the calmest stands, between 1.2 and 1.3", {2.0, 1.5, 1.2, 1.3, 3.0}, 0, 3, 3},
-        Row{"one was dropped before", {2.0, 1.5, 1.2, 1.3}, 1, 3, 3}}) {
+  } rows[] = {{"before", {1.06, 1.0, 1.0}, 0, 2, 1},
+              {"after, which is before the next one, too", {1.0, 1.06, 1.0, 1.0}, 0, 3, 2},
+              {"the calmest stands, between 1.2 and 1.3", {2.0, 1.5, 1.2, 1.3, 3.0}, 0, 3, 3},
+              {"one was dropped before", {2.0, 1.5, 1.2, 1.3}, 1, 3, 3}};
+  for (const auto& [what, looks, dropped, sample, retaken] : rows) {
     int samples = 0, warm = 0;
     std::size_t seen = 0;
     QuietProbe probe([&, &list = looks] { return ++warm <= 10 ? 1e-3 : 1e-3 * list.at(seen++); });

@@ -62,34 +62,24 @@ TEST(NoisySearch, OneProgramUnderTwoNamesIsWithinSixPercentOfItself) {
   EXPECT_LT(quantile(apart, 0.95), 0.06);
 }
 
-// A ladder whose first samples are given; every later sample is the true time.
-struct Ladder {
-  const char* what;
-  std::vector<double> first, later;
-  std::optional<std::size_t> start;
-  std::size_t best;
-  std::size_t finest_tried;
-  bool samples_again = true;
-};
-
+// First samples are given; every later one is the true time.
 TEST(NoisySearch, IsNotMisledByFirstSamples) {
-  const std::vector<double> equal{1.0, 1.02, 1.01, 1.025, 0.7, 0.9, 1.6},
-      clear{3.2, 1, 3.2, 6.4, 9};
-  for (const Ladder& ladder :
-       {Ladder{"two false rises that look clear",
-               {1.0, 0.9, 1.5, 1.5, 0.6, 0.5, 0.9, 2.0, 4.0},
-               {1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.9, 2.0, 4.0},
-               {},
-               5,
-               7},
-        Ladder{"the same to coarser steps",
-               {9, 0.9, 0.5, 0.6, 1.5, 1.5, 0.9, 1.2, 2.4},
-               {9, 0.9, 0.5, 0.6, 0.7, 0.8, 0.9, 1.2, 2.4},
-               6,
-               2,
-               8},
-        Ladder{"equal times are not a rise", equal, equal, {}, 4, 6},
-        Ladder{"what is clearly slower is not run again", clear, clear, {}, 1, 3, false}}) {
+  const std::vector<double> false_rises{1.0, 0.9, 1.5, 1.5, 0.6, 0.5, 0.9, 2.0, 4.0},
+      falls{1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.9, 2.0, 4.0},
+      false_falls{9, 0.9, 0.5, 0.6, 1.5, 1.5, 0.9, 1.2, 2.4},
+      rises{9, 0.9, 0.5, 0.6, 0.7, 0.8, 0.9, 1.2, 2.4},
+      equal{1.0, 1.02, 1.01, 1.025, 0.7, 0.9, 1.6}, clear{3.2, 1, 3.2, 6.4, 9};
+  const struct {
+    const char* what;
+    std::optional<std::size_t> start;
+    std::size_t best, finest_tried;
+    std::vector<double> first, later;
+    bool samples_again = true;
+  } ladders[] = {{"two false rises that look clear", {}, 5, 7, false_rises, falls},
+                 {"the same to coarser steps", 6, 2, 8, false_falls, rises},
+                 {"equal times are not a rise", {}, 4, 6, equal, equal},
+                 {"what is clearly slower is not run again", {}, 1, 3, clear, clear, false}};
+  for (const auto& ladder : ladders) {
     std::vector<PointResult> points(ladder.first.size());
     for (std::size_t rung = 0; rung < points.size(); ++rung) {
       points[rung].status = PointStatus::ok;
