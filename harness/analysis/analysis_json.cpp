@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <map>
 #include <tuple>
@@ -53,8 +52,7 @@ static void to_json(json& to, const Cell& cell) {
   }
 }
 
-// Rows that a figure shows before all others: methods that are first in a cell, then the paper's
-// six, whether they have an answer or not.
+// Rows that figures show first: methods that are first in a cell, then the paper's six.
 static std::vector<std::string> leaders_of(const Plane& plane) {
   std::vector<std::string> rows;
   for (const Cell& cell : plane.cells) {
@@ -96,8 +94,6 @@ static void to_json(json& to, const BudgetTable& table) {
 }
 
 namespace {
-
-// ---- curves of cost ----
 
 // The least sample, and the median of three or more: between them lies what disturbed the runs.
 // Null: not timed.

@@ -29,8 +29,7 @@ std::string joined(const std::vector<const Entry*>& entries) {
   return words + (rest > 0 ? " and " + std::to_string(rest) + " more" : "");
 }
 
-// The first, and counting entries too close to it to rank; those with too few samples for an
-// interval are left out.
+// The first, and counting entries with an interval that are too close to it to rank.
 std::vector<const Entry*> equals_in(const Cell& cell) {
   std::vector<const Entry*> list;
   for (const Entry& entry : cell.entries) {
@@ -151,9 +150,9 @@ std::string span_of_errors(const std::vector<Plane>& planes) {
     }
   }
   if (last == 0 || first > duration * (1 - 1e-9)) return "";
-  return "Errors of " + percent(headline_error) + " are known up to " +
-         (first < last ? number_text(first) + " or " : "") + number_text(last) + " s of " +
-         number_text(duration) + " s: later the scene's references differ too much. ";
+  return concat("Errors of ", percent(headline_error), " are known up to ",
+                first < last ? number_text(first) + " or " : "", last, " s of ", duration,
+                " s: later the scene's references differ too much. ");
 }
 
 }  // namespace harness::analysis

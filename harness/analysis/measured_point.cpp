@@ -90,8 +90,7 @@ std::string text(const Ratio& ratio) {
   if (std::isnan(ratio.value)) return "?";
   if (!ratio.known() || !(ratio.value > 0))
     return number_text(ratio.value, ratio.value >= 100 ? 3 : 2) + " (?)";
-  // As many decimals as show the interval's width and two digits of each number, but no more than
-  // four digits of the value.
+  // Decimals that show the interval's width and two digits of each number; at most four digits.
   const auto order = [](double x) { return static_cast<int>(std::floor(std::log10(x))); };
   const int most = std::max(0, 3 - order(ratio.value));
   const int width = ratio.high > ratio.low ? -order(ratio.high - ratio.low) : most;

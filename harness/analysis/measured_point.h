@@ -58,7 +58,6 @@ class Point {
 
 Ratio ratio(const Point& a, const Point& b);  // of a's time to b's
 
-// A contestant as a file describes it.
 struct Role {
   std::string name, family, solver;
   bool competes = true;
@@ -103,8 +102,6 @@ auto grouped(const Items& items, Key key) {
   }
   return groups;
 }
-
-// ---- In words ----
 
 // For a mesh its file's name: "shirt.obj" for "mesh:clothes/shirt.obj,pins=y>1.2".
 std::string scene_words(const std::string& scene);

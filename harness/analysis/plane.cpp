@@ -39,8 +39,7 @@ std::string why_empty(const std::vector<Point>& here, double level, double known
              : "the file has no errors";
 }
 
-// Keeps each contestant's fastest entry. An unranked contestant shares its solver's row, in which
-// only the fastest counts.
+// Keeps each contestant's fastest entry. Of several in one row only the fastest counts.
 void rank(std::vector<Entry>& entries) {
   std::ranges::stable_sort(entries, {}, [](const Entry& e) { return e.point.seconds(); });
   std::vector<Entry> ranked;
@@ -223,8 +222,6 @@ std::vector<Plane> planes_of(const Runs& runs) {
     planes.push_back(plane_of(here, runs));
   return planes;
 }
-
-// ---- Budgets ----
 
 std::vector<BudgetTable> budget_tables(const Runs& runs, const std::vector<double>& budgets) {
   std::vector<Point> points = runs.points;

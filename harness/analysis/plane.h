@@ -76,9 +76,8 @@ std::vector<Plane> planes_of(const Runs& runs);
 
 inline constexpr double frame_rate = 60;  // frames a second
 
-// A method's best run within a budget: the tightest strain limit at which the motion error is at
-// most the headline's, then the least error; without such a run, the least error at the loosest
-// limit.
+// A method's best run within a budget: the tightest strain limit with a motion error of at most the
+// headline's, then the least error; without one, the least error at the loosest limit.
 struct Reach {
   double strain_limit, error;  // error: not-a-number if it is not known
   double frame_seconds;        // 99th percentile

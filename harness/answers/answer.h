@@ -25,7 +25,6 @@ struct AnswerScene {
 };
 AnswerScene answer_scene(std::string_view name, const SceneParameters& given);
 
-// What readings see of a run.
 struct Motion {
   Motion(const inextensible::State& start, double h) : state(start), step(h) { take(start); }
   // After each accepted step.
@@ -68,18 +67,14 @@ struct KnownAnswer {
   AnswerScene at() const { return answer_scene(scene, given); }
 };
 
-// Those of configs/answers.json.
 std::span<const KnownAnswer> known_answers();
-
-// ---- Runs of solvers ----
 
 // A solver's runs at all steps of an answer, each in a child process, the coarsest step first.
 struct AnswerRun {
   const KnownAnswer* answer;
   std::string solver;
 };
-// All contestants that can run an answer's scene. Patterns must match the whole name. Throws
-// UsageError if nothing matches.
+// All contestants that can run the scene. Patterns match whole names. Throws UsageError if none do.
 std::vector<AnswerRun> plan_answers(const std::optional<Pattern>& answer,
                                     const std::optional<Pattern>& solver);
 
@@ -94,7 +89,6 @@ AnswerOutcome run_answers(const std::vector<AnswerRun>& plan, double timeout,
 nlohmann::json answers_document(nlohmann::json context, const std::vector<AnswerRun>& plan,
                                 const AnswerOutcome& outcome,
                                 const std::vector<std::string>& command);
-// Prints such a document.
 void print_answers(std::ostream& out, const nlohmann::json& document);
 
 }  // namespace harness

@@ -1,5 +1,4 @@
 // The known answers of configs/answers.json, and what solvers make of them.
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -30,6 +29,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(KnownAnswer, name, scene, given,
 
 namespace {
 
+using inextensible::Backend;
+using inextensible::State;
 using nlohmann::json;
 
 const std::map<std::string, double (*)(const SceneParameters&)> formulas{
@@ -61,32 +62,6 @@ KnownAnswer known_answer_of(const json& entry) {
   }
   return answer;
 }
-
-}  // namespace
-
-AnswerScene answer_scene(std::string_view name, const SceneParameters& given) {
-  const auto type = find_scene(name);
-  const SceneParameters parameters = complete_parameters(*type, given);
-  return {type, parameters, type->build(parameters)};
-}
-
-std::span<const KnownAnswer> known_answers() {
-  static const std::vector<KnownAnswer> table = [] {
-    const std::string path = source_path("configs/answers.json");
-    std::vector<KnownAnswer> all;
-    for (const json& entry : parse_document(read_file(path, "file of known answers"), path))
-      all.push_back(known_answer_of(entry));
-    return all;
-  }();
-  return table;
-}
-
-// ---- Runs of solvers ----
-
-namespace {
-
-using inextensible::Backend;
-using inextensible::State;
 
 struct Ending : CalibrationTrial {
   double value = unknown;
@@ -201,6 +176,23 @@ json run_apart(const KnownAnswer& answer, const Backend& backend, double step, d
 }
 
 }  // namespace
+
+AnswerScene answer_scene(std::string_view name, const SceneParameters& given) {
+  const auto type = find_scene(name);
+  const SceneParameters parameters = complete_parameters(*type, given);
+  return {type, parameters, type->build(parameters)};
+}
+
+std::span<const KnownAnswer> known_answers() {
+  static const std::vector<KnownAnswer> table = [] {
+    const std::string path = source_path("configs/answers.json");
+    std::vector<KnownAnswer> all;
+    for (const json& entry : parse_document(read_file(path, "file of known answers"), path))
+      all.push_back(known_answer_of(entry));
+    return all;
+  }();
+  return table;
+}
 
 std::vector<AnswerRun> plan_answers(const std::optional<Pattern>& answer_pattern,
                                     const std::optional<Pattern>& solver) {

@@ -15,8 +15,7 @@ namespace {
 
 using inextensible::Positions;
 
-// RMS distance from the scene's exact motion, or its reference, at the end of the run, over the
-// scene's size.
+// RMS distance from the exact motion or the reference at the end of the run, over the size.
 double distance_at_the_end(const AnswerScene& at, const Motion& motion) {
   if (at.type->exact)
     return rms_distance(at.scene, motion.state.x, at.type->exact(at.parameters, motion.state.time));
@@ -25,8 +24,7 @@ double distance_at_the_end(const AnswerScene& at, const Motion& motion) {
   return known ? rms_distance(at.scene, motion.state.x, reference->positions.back()) : unknown;
 }
 
-// The angle by which a body that stays centered on the origin turns in the last step, over the
-// step's duration and the initial rate.
+// The angular velocity in the last step of a body centered on the origin, over the initial one.
 double turning_rate_kept(const AnswerScene& at, const Motion& motion) {
   double cosine = 0, sine = 0;
   for (Eigen::Index i = 0; i < motion.state.x.cols(); ++i) {
@@ -190,10 +188,7 @@ double net_angle_deviation(const AnswerScene& at, const Motion& motion) {
   return cells ? std::sqrt(squares / cells) * 180 / std::numbers::pi : std::nan("");
 }
 
-// ---- The drape coefficient ----
-
-// Cusick's drape coefficient (BS 5058, ISO 9073-9), %: the part of the ring between table and rim
-// that the shadow of the draped disc covers.
+// Cusick's drape coefficient (BS 5058, ISO 9073-9), %: how much of the ring the shadow covers.
 double drape_coefficient(const AnswerScene& at, const Motion& motion) {
   const double reach = 1.1 * at.parameters.at("radius"),
                table = std::numbers::pi * std::pow(at.parameters.at("table"), 2);

@@ -1,6 +1,5 @@
 #include "harness/base/child_process.h"
 
-#include <fcntl.h>
 #include <poll.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -8,7 +7,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -22,26 +20,22 @@
 
 #include "harness/base/clock.h"
 #include "harness/base/files.h"
-#include "harness/base/interrupt.h"
 
 namespace harness {
 namespace {
 
 constexpr double kill_after = 2;  // s after SIGTERM
-// A longer time between two looks at the child, s: this process was stopped (Ctrl-Z), and the child
-// is not charged for it.
+// s. A longer gap between two looks: this process was stopped (Ctrl-Z); the child is not charged.
 constexpr double stopped_for = 1;
 constexpr char returned_mark = 'r', threw_mark = 'x';
 
 double now() { return since({}); }
 
-// A child that ends with this process at the latest. SIGCHLD is blocked while this lives, so that
-// nothing polls beside a measurement, and a wait returns as soon as the child ends or another
-// signal comes.
+// A child that ends with this process at the latest. SIGCHLD is blocked meanwhile: a wait returns
+// as soon as the child ends, and nothing polls beside a measurement.
 class Child {
  public:
-  // work: in the child, with the signals as they were; it must not return. Throws
-  // std::runtime_error if no process can be made.
+  // work: in the child, with the signals as they were; does not return. Throws std::runtime_error.
   explicit Child(const std::function<void()>& work) {
     sigemptyset(&child_ended_);
     sigaddset(&child_ended_, SIGCHLD);
@@ -84,8 +78,7 @@ class Child {
   rusage usage_{};
 };
 
-// Files without a name instead of pipes: nothing can block, however much is written and whoever
-// still has the file open.
+// Files without a name instead of pipes: nothing blocks, whoever still has the file open.
 OpenFile nameless_file(const std::string& text = "") {
   OpenFile file(memfd_create("bench", MFD_CLOEXEC));
   if (!file || !write_whole(file.get(), text) || lseek(file.get(), 0, SEEK_SET) != 0)
@@ -164,8 +157,7 @@ void attend(Child& child, double last, Heartbeat& heartbeat, const ChildLimits& 
   }
 }
 
-// A SIGTERM that ended the child may have been meant for the whole job, and reach this process a
-// moment later.
+// A SIGTERM of the child may be meant for the whole job, and reach this process a moment later.
 bool interrupted_soon(const ChildLimits& limits) {
   for (int i = 0; i < 10 && limits.interrupted; ++i) {
     if (limits.interrupted()) return true;

@@ -1,5 +1,4 @@
-// Work done in a child process of its own: what it does to memory, how it ends and how long it
-// takes stay there.
+// Work done in a child process: what it does to memory, and how it ends, stays there.
 #pragma once
 
 #include <atomic>

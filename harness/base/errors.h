@@ -25,7 +25,6 @@ std::string closest(std::string_view name, const std::vector<std::string>& known
 void check_known(std::string_view kind, std::string_view name,
                  const std::vector<std::string>& known, const std::string& where = "");
 
-// The names of solvers, scenes or settings, as suggestions.
 template <class Infos>
 std::vector<std::string> names_of(const Infos& infos) {
   std::vector<std::string> names;

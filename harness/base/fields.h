@@ -15,6 +15,7 @@ struct FieldTraits {
   bool nullable = false;    // may be null or absent in files: an unknown number, an empty text
   bool positive = false;    // a number above 0, not merely of at least 0
 };
+inline constexpr FieldTraits may_be_absent{.nullable = true};
 
 template <class Object, class Value>
 struct Field {

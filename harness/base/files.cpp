@@ -27,8 +27,7 @@ fs::path folder_of(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
-// "-", or another name of what standard output is connected to (/dev/stdout). A regular file there
-// must not be replaced, since the program has it open.
+// "-", or another name of standard output (/dev/stdout): its file is open and must stay.
 bool is_standard_output(const std::string& path) {
   struct stat named {
   }, open{};
@@ -42,8 +41,7 @@ bool is_special(const std::string& path) {
   return stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
 }
 
-// Removes what processes that were killed left in the folder: entries whose names are the stem, the
-// number of a process that is gone, and more.
+// Removes what killed processes left: entries whose names are the stem, their number, and more.
 void remove_left(const fs::path& folder, const std::string& stem) {
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(folder, ignored)) {
@@ -66,15 +64,13 @@ class Beside {
   Beside(const Beside&) = delete;
   Beside& operator=(const Beside&) = delete;
 
-  // Those of `path` that processes which were killed left.
   static void remove_left_of(const fs::path& path) {
     remove_left(folder_of(path), path.filename().string() + mark);
   }
 
   bool made() const { return static_cast<bool>(file_); }  // false: errno says why
 
-  // Takes the place of `path` with this text, and the permissions of the old file there or of a new
-  // one.
+  // Takes the place of `path` with this text and the permissions of the old file, or a new one's.
   bool replace(const std::string& path, const std::string& text) {
     struct stat status {};
     const mode_t mode = stat(path.c_str(), &status) == 0 ? status.st_mode & 07777 : new_file_mode();

@@ -1,5 +1,4 @@
-// Files read and written as a whole. Everything that this program leaves on a disk is opened here,
-// except journals, which are written line by line.
+// Files read and written as a whole: everything that this program leaves on a disk but journals.
 #pragma once
 
 #include <unistd.h>
@@ -47,17 +46,14 @@ std::string read_whole(int file);
 // what: the role of the file ("suite"), for messages. Throws UsageError if it cannot be read.
 std::string read_file(const std::string& path, const std::string& what);
 
-// The file that writing to `path` changes: symbolic links are followed, even to a file that does
-// not exist yet, so that two names of one output share a lock. Throws UsageError for "", a folder,
-// and circular links.
+// The file that writing to `path` changes: links are followed, even to a file that does not exist
+// yet, so that two names share a lock. Throws UsageError for "", a folder, and circular links.
 std::string output_path(const std::string& path);
 
-// The same for an output with a journal beside it. Throws UsageError for devices, pipes and "-"
-// too.
+// The same for an output with a journal. Throws UsageError for devices, pipes and "-" too.
 std::string regular_output_path(const std::string& path);
 
-// Throws UsageError unless `path` can be written. Nothing is left behind, no other file is touched,
-// and no folder is made.
+// Throws UsageError unless `path` can be written. No file is left, and no folder is made.
 void check_writable(const std::string& path);
 
 // Replaces a regular file by a temporary file in the same folder, which is written, synced and
@@ -90,9 +86,8 @@ pid_t lock_holder(int file);
 
 // ---- Standard input, output and error as a program may find them: closed, full, cut off ----
 
-// Opens those of descriptors 0 to 2 that are closed, to where nothing can be read or written:
-// otherwise the next file that is opened becomes one of them, and messages are written into it.
-// First thing in main.
+// Opens those of descriptors 0 to 2 that are closed, so that no file that is opened later becomes
+// one of them and messages are written into it. First thing in main.
 void open_standard_streams();
 
 // While it lives, what is written to standard output goes to standard error: what foreign code
@@ -119,11 +114,9 @@ void check_standard_output();
 
 // Whether the program runs from where it was installed, and not from a build folder.
 bool is_installed();
-// A file that comes with the program, named as in the source tree: of the share folder beside an
-// installed bench, else of the source tree.
+// A file that comes with the program, named as in the source tree, wherever it is installed.
 std::string source_path(const std::string& relative);
-// Where results go by default: results/local of the source tree, for an installed bench of the
-// current folder.
+// The default place of results: results/local of the source tree; installed, of the current folder.
 std::string local_result(const std::string& name);
 // The same place, which is not created.
 std::string local_place(const std::string& name);

@@ -15,7 +15,6 @@ inline void catch_interrupts() {
 }
 inline bool interrupted() { return interrupt_requested != 0; }
 
-// Thrown by a loop that was asked to stop.
 class Interrupted : public std::exception {};
 
 }  // namespace harness

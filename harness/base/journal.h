@@ -16,9 +16,8 @@ namespace harness {
 
 class Journal {
  public:
-  // Opens or makes the journal of the output file `out`, reads it, and holds it against other
-  // processes until the destructor, which removes it if it is empty. Throws UsageError if another
-  // process is writing this output.
+  // Opens or makes the journal of the output file `out`, reads it, and holds it until the
+  // destructor, which removes it if it is empty. Throws UsageError if another process holds it.
   explicit Journal(const std::string& out);
   ~Journal();
   Journal(const Journal&) = delete;
@@ -31,8 +30,7 @@ class Journal {
   // Null: not known. Valid until the key is added again or forgotten.
   const nlohmann::json* find(const std::string& key) const;
 
-  // The following throw FileError where the disk is full or the file has been removed meanwhile;
-  // what was written before is then still whole.
+  // These throw FileError on a full disk or a removed file; what was written before is whole.
   void start(const nlohmann::json& header);  // drops what is known
   void go_on(const nlohmann::json& header);  // keeps it
   const nlohmann::json& add(const std::string& key, nlohmann::json value);

@@ -13,6 +13,28 @@ namespace harness {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
+namespace {
+
+template <class Json>
+std::string written(const Json& value) {
+  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+// The entries of `depth` levels a line each.
+std::string lines(const ordered_json& value, int depth) {
+  if (!value.is_structured()) return written(value);
+  const std::string end = depth > 0 && !value.empty() ? "\n" : "";
+  std::string text, between = end;
+  for (const auto& [key, item] : value.items()) {
+    text += between + (value.is_object() ? written(ordered_json(key)) + ": " : "") +
+            lines(item, depth - 1);
+    between = "," + (end.empty() ? " " : end);
+  }
+  return (value.is_object() ? "{" : "[") + text + end + (value.is_object() ? "}" : "]");
+}
+
+}  // namespace
+
 std::string Bounds::text() const {
   const auto words = [this](const char* relation, double bound) {
     return relation + number_text(bound, whole ? 16 : 6);
@@ -28,8 +50,7 @@ bool Bounds::hold(double number) const {
          (below ? number < most : number <= most) && (!whole || number == std::floor(number));
 }
 
-// Looks at the text before it becomes a tree: trees are taken apart by recursion, and keep the last
-// of two equal keys.
+// Looks at the text first: trees are parsed by recursion, and keep the last of two equal keys.
 json parse_document(const std::string& text, const std::string& name) {
   constexpr std::size_t deepest = 64;  // ours are less than ten deep
   const std::string refusal = "'" + name + "' is not JSON: ";
@@ -63,30 +84,6 @@ std::string value_text(const json& value) {
            std::to_string(value.size());
   return shortened(compact(value), 60);
 }
-
-// ---- JSON as people read it ----
-
-namespace {
-
-template <class Json>
-std::string written(const Json& value) {
-  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-// The entries of `depth` levels a line each.
-std::string lines(const ordered_json& value, int depth) {
-  if (!value.is_structured()) return written(value);
-  const std::string end = depth > 0 && !value.empty() ? "\n" : "";
-  std::string text, between = end;
-  for (const auto& [key, item] : value.items()) {
-    text += between + (value.is_object() ? written(ordered_json(key)) + ": " : "") +
-            lines(item, depth - 1);
-    between = "," + (end.empty() ? " " : end);
-  }
-  return (value.is_object() ? "{" : "[") + text + end + (value.is_object() ? "}" : "]");
-}
-
-}  // namespace
 
 std::string compact(const json& value) { return written(value); }
 

@@ -29,9 +29,8 @@ struct Bounds {
   bool hold(double number) const;
 };
 
-// JSON from outside, with // comments or without. name: the file, or what else the text is. Throws
-// UsageError, naming it, if it is not JSON, if an object has a key twice, or if it is nested deeper
-// than our own documents.
+// JSON from outside, // comments or not. name: the file, or what else it is. Throws UsageError,
+// naming it, if it is not JSON, has a key twice, or is nested deeper than our documents.
 nlohmann::json parse_document(const std::string& text, const std::string& name);
 
 // A value for a message: short, whatever it is.
@@ -39,12 +38,10 @@ std::string value_text(const nlohmann::json& value);
 
 // ---- JSON as people read it: short values on one line, a list of points one a line ----
 
-// As programs read it: without spaces. Text that is not UTF-8 (a path, a message from elsewhere)
-// keeps what can be kept.
+// As programs read it: without spaces. Text that is not UTF-8 keeps what can be kept.
 std::string compact(const nlohmann::json& value);
 
-// A document for a repository, whose differences can be read: each entry of its objects and each
-// item of its lists is one line.
+// A document for a repository: entries of its objects and items of its lists are a line each.
 std::string document_text(const nlohmann::ordered_json& document);
 
 }  // namespace harness

@@ -1,5 +1,4 @@
-// Regular expressions of users, in RE2's syntax: whatever is asked, the answer takes time
-// proportional to the text.
+// Regular expressions of users in RE2's syntax, whose time is proportional to the text.
 #pragma once
 
 #include <memory>

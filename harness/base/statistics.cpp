@@ -30,8 +30,7 @@ Ranking rank_all(const std::vector<double>& a, const std::vector<double>& b) {
   return ranking;
 }
 
-// [s]: in how many ways n of these ranks add up to s. Doubles hold them exactly enough: (60 over
-// 30) is 1.2e17.
+// [s]: in how many ways n of these ranks add up to s; at most (60 over 30) = 1.2e17.
 std::vector<double> ways_to_sum(const std::vector<int>& ranks, std::size_t n) {
   const std::size_t sums = std::accumulate(ranks.begin(), ranks.end(), 1);
   // ways[k][s]: choices of k of the ranks seen so far with sum s.
@@ -46,15 +45,13 @@ std::vector<double> ways_to_sum(const std::vector<int>& ranks, std::size_t n) {
   return ways[n];
 }
 
-// Deviations of U, the number of pairs whose first member is the larger one, from its mean, where
-// both come from one distribution.
+// Standard deviation of U, the number of pairs whose first member is larger, for one distribution.
 double normal_spread(double n1, double n2, double ties) {
   const double n = n1 + n2;
   return std::sqrt(n1 * n2 / 12 * (n + 1 - ties / (n * (n - 1))));
 }
 
-// The largest c for which U is below c with a probability of at most 2.5 %, if both come from one
-// distribution; 0 if there is none.
+// The largest c such that U < c has a probability of at most 2.5 % in one distribution, or 0.
 std::size_t critical_count(std::size_t n1, std::size_t n2) {
   if (n1 + n2 > exact_up_to) {
     const auto a = static_cast<double>(n1), b = static_cast<double>(n2);

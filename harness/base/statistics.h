@@ -59,8 +59,7 @@ struct Slope {
   double high() const { return value + half_width; }
 };
 
-// Least squares of log y over log x (GSL). Points that are not positive and finite are left out;
-// fewer than two give a slope of not-a-number.
+// Least squares of log y over log x (GSL), of positive finite points. Fewer than two: not-a-number.
 Slope log_log_slope(std::span<const double> x, std::span<const double> y);
 
 }  // namespace harness

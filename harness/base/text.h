@@ -1,18 +1,25 @@
 // Numbers as people read them.
 #pragma once
 
+#include <sstream>
 #include <string>
 
 namespace harness {
 
+// All parts in one text; numbers as number_text() writes them.
+template <class... Parts>
+std::string concat(const Parts&... parts) {
+  std::ostringstream text;
+  (text << ... << parts);
+  return text.str();
+}
+
 // With this many significant digits and no trailing zeros; six is the default of streams.
 std::string number_text(double value, int digits = 6);
 
-// The number with this many significant digits.
 double rounded_to(double value, int digits = 6);
 
-// With as many digits, six or more, as set it apart from `other`: "0.00010000002", not "0.0001",
-// against a limit of 0.0001.
+// With as many digits, six or more, as set it apart from `other`: "0.00010000002" against 0.0001.
 std::string told_apart(double value, double other);
 
 // `more` at the end of a list, after a separator unless it is the first.

@@ -1,5 +1,4 @@
-// Only one program at a time measures times on a machine: two side by side slow each other down,
-// and neither's times mean anything.
+// Only one program at a time measures times on a machine: two side by side slow each other down.
 #pragma once
 
 #include "harness/base/files.h"
@@ -11,8 +10,7 @@ namespace harness {
 // Forked children do not hold it; programs that the process starts may go on under it.
 class TimingLock {
  public:
-  // If another process holds it: waits, with one line on stderr, or, unless `wait`, throws
-  // UsageError. Throws Interrupted.
+  // If another process holds it: waits, telling so, or throws UsageError. Throws Interrupted.
   explicit TimingLock(bool wait = true);
   ~TimingLock();
 

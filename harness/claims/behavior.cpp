@@ -35,7 +35,6 @@ Residuals iterated(const Point& p) {
   return {sums.samples, sums.first / n, sums.last / n, sums.change / n};
 }
 
-// Fast projection's runs by strain limit and step.
 std::map<double, std::map<double, Point>> iterated_runs(const Points& points, const char* scene) {
   constexpr int enough = 10;  // samples of a run
   std::map<double, std::map<double, Point>> by_limit;
@@ -50,7 +49,6 @@ std::map<double, std::map<double, Point>> iterated_runs(const Points& points, co
 // A viewer sees no difference below it: root mean square distance over the cloth's size.
 constexpr double alike = 0.02;
 
-// One scene of the stability sweep's frame-by-frame comparison.
 struct Frames {
   double before = 0;  // largest distance of any vertex up to first contact
   double after = 0;   // largest root mean square distance after it

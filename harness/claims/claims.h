@@ -40,8 +40,7 @@ Answer all_of(const std::vector<Answer>& answers);  // no if one is no
 std::string verdict_of(Answer answer);
 // On a claim in two parts: one yes and one no is `changed`.
 std::string verdict_of(Answer one, Answer other);
-// By places: reproduced if all say yes, not reproduced if over half say no, changed if over half
-// say yes and some no.
+// By places: all yes: reproduced; over half no: not reproduced; over half yes, some no: changed.
 std::string verdict_of_counts(int yes, int no, int all);
 // On a claim judged in several ways; those not measured do not count.
 std::string verdict_of_all(const std::vector<std::string>& verdicts);
@@ -63,13 +62,11 @@ struct Points {
   std::vector<const nlohmann::json*> matrix, freedom, same_frame;  // of stability sweeps
 
   // The best points of a contestant ("": of all) within a level of error, over the axis of a sweep
-  // ("strain" or "resolution"). The faster of tuned and default settings counts, so that tuning a
-  // scene as a whole harms nobody. A strain sweep of several sizes counts at the largest one unless
-  // `vertices` are given.
+  // ("strain" or "resolution"). The faster of tuned and default settings counts, so that tuning
+  // harms nobody. A strain sweep counts at its largest size unless `vertices` are given.
   Curve best(const std::string& scene, const std::string& sweep, const std::string& contestant,
              double level = any_motion, std::optional<double> vertices = {}) const;
-  // Over error levels: the fastest points of step sweeps of the largest size, at any step and
-  // limit.
+  // Over error levels: the fastest points of step sweeps of the largest size.
   Curve best_at_errors(const std::string& scene, const std::string& contestant) const;
 };
 
@@ -81,8 +78,7 @@ std::vector<std::string> ids_of(const std::vector<Curve>& curves);
 using Ways = std::vector<std::pair<std::string, Verdict>>;
 Verdict at_levels(const std::function<Verdict(double level)>& judge, const Ways& more = {});
 
-// ---- One function per claim; not_measured where measurements are missing ----
-
+// One function per claim; not_measured where measurements are missing.
 using Judge = Verdict(const Points& points);
 Judge chain_time_over_strain, chain_time_over_resolution, chain_speed, springs_stiffness;
 Judge drape_time_over_strain, drape_time_over_resolution, residual_order, same_frame;
@@ -93,8 +89,7 @@ Judge degrees_of_freedom_left, shake_small_steps, garment_slip;
 // parabola whose arc is longer than the chord by `strain`.
 double parabola_sag(double length, double strain);
 
-// How far the higher and the lower end of a garment's rim have slipped from the waist, over the way
-// from there to the hips.
+// How far both ends of a garment's rim have slipped from the waist, over the way to the hips.
 struct Slip {
   double least, most;
 };

@@ -21,7 +21,6 @@ Answer below(const Slope& slope, double threshold) {
   return above(Slope{-slope.value, slope.half_width, slope.points}, -threshold);
 }
 
-// Slope of seconds over the axis, both logarithmic.
 Slope slope_of(const Curve& curve) {
   std::vector<double> x, y;
   for (const auto& [at, point] : curve) {
@@ -40,8 +39,7 @@ std::vector<std::pair<double, Ratio>> ratios_of(const Curve& a, const Curve& b) 
   return ratios;
 }
 
-// The slope's interval is the wider of what the scatter about the line and what the ratios' own
-// intervals give.
+// The slope's interval is the wider of the scatter's and that of the ratios' own intervals.
 Slope slope_of(const std::vector<std::pair<double, Ratio>>& ratios) {
   std::vector<double> x, y;
   double mean = 0, squares = 0, spread = 0;
@@ -115,8 +113,7 @@ std::string ahead_from(const Curve& fast, const std::vector<Curve>& others) {
   return from;
 }
 
-// "; fastest of all, ours and rivals too: yarn_projection at 10 %, 1 %; icd at 0.1 %", at the
-// places of fast projection's curve.
+// "; fastest of all, ours and rivals too: x at 10 %, 1 %; icd at 0.1 %", at the places of `fast`.
 std::string first_of_all(const Points& points, const std::string& sweep, const Curve& fast,
                          double level, std::string (*words)(double),
                          std::optional<double> vertices = {}) {
@@ -131,8 +128,7 @@ std::string first_of_all(const Points& points, const std::string& sweep, const C
   return "; fastest of all, ours and rivals too: " + all;
 }
 
-// C5 at one size. Strain limiting in a random order is stopped where it is far behind, so that it
-// may have no slope at a large size.
+// C5 at one size. Strain limiting that was stopped far behind may have no slope at a large size.
 Verdict drape_over_strain(const Points& points, double level, double vertices) {
   const auto curve_of = [&](const PaperMethod& method) {
     return points.best("drape", "strain", method.name, level, vertices);

@@ -98,8 +98,7 @@ struct Verb {
   bool has_children = false;
 };
 
-// The action of a verb given as a struct: declare() adds its members as options, run() acts, and
-// may take the typed words for the record.
+// The action of a verb as a struct: declare() adds its options, run() acts, maybe on typed words.
 template <class Options>
 Action verb(const Command& command) {
   const auto options = std::make_shared<Options>();
@@ -230,7 +229,6 @@ class Progress {
   std::size_t width_ = 0;  // of the terminal's line
 };
 
-// Events that record small runs in the journal and show them.
 RunEvents journaled_events(Journal& journal, Progress& progress);
 
 struct OutputOptions {
@@ -258,9 +256,7 @@ struct Undertaking {
   const char* what;               // the same in messages
   // Runs what the journal lacks. before: context of the resumed run, or null.
   std::function<Finished(Journal& journal, const nlohmann::json& before)> run;
-  // Adds the results of a file to the journal.
   std::function<void(const nlohmann::json& result, Journal&)> add = [](auto&&...) {};
-  // Results in a journal.
   std::function<std::size_t(const Journal&)> count = [](const Journal& j) {
     return j.known().size();
   };
@@ -280,8 +276,7 @@ int draw(const std::string& script, const Words& arguments, const std::string& o
 
 bool is_sweep(const nlohmann::json& document);  // over strain, resolution or step
 
-// A result as text, as wide as the terminal. name: the file in hints. all: every contestant of a
-// sweep, and how runs failed.
+// A result as text, as wide as the terminal. name: in hints. all: every contestant, and failures.
 std::string text_of_result(const nlohmann::json& document, const std::string& name,
                            bool all = false);
 

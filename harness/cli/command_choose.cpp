@@ -19,8 +19,6 @@ namespace {
 using analysis::percent;
 using nlohmann::json;
 
-// ---- What it says of what it found ----
-
 std::string ms(double seconds) { return number_text(1e3 * seconds, 3); }
 
 struct Choice {
@@ -40,7 +38,6 @@ struct Choice {
            (std::isnan(pick.error) ? "unknown" : percent(pick.error));
   }
 
-  // Why no run can be recommended.
   const char* nothing_found() const {
     if (trials.complete)
       return "no solver meets limit and error: a larger --error or --limit may be met\n";
@@ -90,14 +87,11 @@ struct Choice {
   }
 };
 
-// ---- Measuring ----
-
 constexpr double far_behind = 4;         // times the fastest run so far: slower runs are stopped
 constexpr int finest_part = 32;          // the smallest step is this part of a frame
 constexpr double reference_share = 0.4;  // at most, of --seconds
 
-// The scene's contestants that --solver matches, and solvers named in full that do not compete
-// there. Throws UsageError if there are none.
+// The contestants that --solver matches, and solvers named in full. Throws UsageError if none.
 Contestants contestants_for(const std::string& given, const SceneType& type,
                             const SceneParameters& parameters) {
   Contestants all = competitors(type, parameters);

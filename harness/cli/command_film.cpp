@@ -21,9 +21,7 @@ constexpr int still_samples = 6, film_samples = 3;
 
 using analysis::percent;
 
-// File endings of pictures and films, and of files for other programs.
-const std::set<std::string> picture_endings{".webp", ".mp4", ".png"},
-    mesh_endings{".obj", ".pvd", ".pc2"};
+const std::set<std::string> picture_endings{".webp", ".mp4", ".png"}, mesh_endings{".obj", ".pc2"};
 
 std::string name_of(const FilmRun& run, const std::string& solver) {
   return solver + ", " + percent(run.strain_limit) + ", steps of " + step_text(run.step) + " s";
@@ -67,7 +65,7 @@ struct Film : SceneOptions {
     command.option("--width", width, "of each picture; default: 480", "PIXELS",
                    {.least = 16, .most = 4096, .whole = true});
     command.option("--out", out,
-                   ".webp or .mp4: a film; .png: stills; .obj, .pvd, .pc2: for other programs; "
+                   ".webp or .mp4: a film; .png: stills; .obj, .pc2: for other programs; "
                    "default: results/local/film-<scene>.webp, .png with --stills",
                    "FILE");
   }
@@ -93,8 +91,8 @@ struct Film : SceneOptions {
     const double end = static_cast<double>(last) / film.frames_per_second;
     for (const double time : stills) {
       if (time > end + 0.5 / film.frames_per_second)
-        throw UsageError("--stills: " + number_text(time) + " s is not within the film, 0 to " +
-                         number_text(end) + " s (--set duration=SECONDS changes that)");
+        throw UsageError(concat("--stills: ", time, " s is not within the film, 0 to ", end,
+                                " s (--set duration=SECONDS changes that)"));
       frames.push_back(static_cast<std::size_t>(std::lround(time * film.frames_per_second)));
     }
     return frames;
@@ -103,8 +101,7 @@ struct Film : SceneOptions {
   void check_format(const std::string& ending) const {
     if (!picture_endings.contains(ending) && !mesh_endings.contains(ending))
       throw UsageError("--out '" + out +
-                       "': must end in .webp, .mp4, .png (stills), .obj, .pvd (ParaView) or .pc2 "
-                       "(Blender)");
+                       "': must end in .webp, .mp4, .png (stills), .obj or .pc2 (Blender)");
     if (!stills.empty() && ending != ".png")
       throw UsageError("--stills: --out '" + out + "' must end in .png");
     if (width > 0 && mesh_endings.contains(ending))
@@ -124,7 +121,6 @@ struct Film : SceneOptions {
     }
   }
 
-  // The script assembles the pictures from a temporary folder.
   int draw_pictures(const Recording& recording, const std::vector<std::size_t>& frames,
                     bool still) const {
     const TemporaryFolder folder("film");

@@ -38,7 +38,6 @@ struct ReferenceVerb : SweepOptions {
     command.option("--finest", finest, "smallest step of step halving, s", "S", Bounds::positive());
   }
 
-  // One scene at the given sizes.
   std::vector<SceneOfReference> given_scenes() const {
     if (scene.empty()) throw UsageError("--n and --set go with --scene");
     if (n.empty()) return {{name(), complete_parameters()}};
@@ -51,7 +50,6 @@ struct ReferenceVerb : SweepOptions {
     return scenes;
   }
 
-  // The scenes of a suite's sweeps.
   std::vector<SceneOfReference> scenes_of_suite() const {
     Suite suite = read_suite(suite_path(*this));
     std::erase_if(suite.sweeps, [this](const SweepSpec& s) {

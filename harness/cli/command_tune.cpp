@@ -33,7 +33,6 @@ std::vector<std::string> chosen_solvers(const std::string& text, const SweepSpec
 
 using Entries = std::vector<TunedEntry>;
 
-// Sorted by scene and solver.
 void write_entries(const std::string& file, Entries& entries) {
   std::ranges::stable_sort(entries, {}, [kinds = scene_kinds()](const TunedEntry& entry) {
     return std::pair(std::ranges::find(kinds, entry.kind) - kinds.begin(),
@@ -42,7 +41,6 @@ void write_entries(const std::string& file, Entries& entries) {
   write_atomically(file, document_text(tuned_document(entries)));
 }
 
-// Replaces earlier results at the same places.
 void add_places(TunedEntry& entry, const std::vector<TunedPlace>& found) {
   for (const TunedPlace& place : found) {
     std::erase_if(entry.places, [&](const TunedPlace& p) {

@@ -14,8 +14,6 @@
 
 namespace harness {
 
-// ---- Options ----
-
 namespace {
 
 // A number within bounds, with the message that files get too.
@@ -28,77 +26,6 @@ CLI::Validator within(const Bounds& bounds) {
       },
       "");
 }
-
-}  // namespace
-
-std::optional<double> number_in(const std::string& text) {
-  char* end = nullptr;
-  const double number = std::strtod(text.c_str(), &end);
-  return text.empty() || *end != '\0' ? std::nullopt : std::optional(number);
-}
-
-CLI::Option* Command::placed(CLI::Option* option) const {
-  return group_.empty() ? option : option->group(group_);
-}
-
-void Command::option(const std::string& name, Place place, const std::string& help,
-                     const std::string& type, const Bounds& bounds) const {
-  std::visit(
-      [&](auto value) {
-        using Value = typename decltype(value)::type;
-        CLI::Option* option =
-            placed(app_->add_option(name == "--out" ? "-o,--out" : name, value.get(), help));
-        option->type_name(type);
-        if constexpr (std::is_same_v<Value, Numbers>)
-          option->delimiter(',')->allow_extra_args(false);
-        if constexpr (std::is_arithmetic_v<Value> || std::is_same_v<Value, Numbers>)
-          option->check(within(bounds));
-      },
-      place);
-}
-
-void Command::repeatable(const std::string& name, Words& values, const std::string& help,
-                         const std::string& type) const {
-  placed(app_->add_option(name, values, help))->type_name(type)->allow_extra_args(false);
-}
-
-void Command::alternatives(const std::string& name, std::string& value,
-                           const std::string& help) const {
-  placed(app_->add_option(name, value, help))
-      ->type_name("REGEX")
-      ->transform([](std::string text) {
-        std::replace(text.begin(), text.end(), ',', '|');
-        return text;
-      })
-      ->delimiter('|')  // joins them again
-      ->multi_option_policy(CLI::MultiOptionPolicy::Join);
-}
-
-void Command::byte_count(const std::string& name, double& value, const std::string& help) const {
-  placed(app_->add_option(name, value, help))
-      ->transform(CLI::AsSizeValue(false).description(""))
-      ->type_name("BYTES")
-      ->check(within({.least = 1 << 20}));
-}
-
-void Command::flag(const std::string& name, bool& value, const std::string& help) const {
-  placed(app_->add_flag(name, value, help));
-}
-
-void Command::require(std::initializer_list<const char*> names) const {
-  for (const char* name : names) app_->get_option(name)->required();
-}
-
-std::string Command::one_typed() const {
-  for (const CLI::Option* option : app_->get_options()) {
-    if (option->get_group() == group_ && option->count() > 0) return option->get_name();
-  }
-  return "";
-}
-
-// ---- Words ----
-
-namespace {
 
 // For the record in a result, which must not name folders of this machine.
 Words recorded_words(int argc, char** argv) {
@@ -131,7 +58,6 @@ const CLI::App* command_of(const CLI::App& program) {
   return typed.empty() ? &program : typed.front();
 }
 
-// Explains the first typed word that CLI11 did not recognize.
 std::string not_understood(const CLI::App& program, const Words& typed) {
   const CLI::App* command = command_of(program);
   const Words left = program.remaining(true);
@@ -154,8 +80,6 @@ std::string not_understood(const CLI::App& program, const Words& typed) {
   const std::string meant = closest(word.substr(0, word.find('=')), known);
   return message + (meant.empty() ? "" : "; did you mean '" + meant + "'?");
 }
-
-// ---- Running ----
 
 constexpr const char* description =
     "bench: benchmark of solvers for inextensible cloth and chains: time at each strain limit, "
@@ -196,7 +120,6 @@ int failed(const std::string& why, ExitCode code) {
   return code;
 }
 
-// Turns exceptions into a line on stderr and an exit code.
 int guarded(const std::function<int()>& work) {
   try {
     const int code = work();
@@ -272,6 +195,72 @@ int run(int argc, char** argv) {
 }
 
 }  // namespace
+
+std::optional<double> number_in(const std::string& text) {
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  return text.empty() || *end != '\0' ? std::nullopt : std::optional(number);
+}
+
+CLI::Option* Command::placed(CLI::Option* option) const {
+  return group_.empty() ? option : option->group(group_);
+}
+
+void Command::option(const std::string& name, Place place, const std::string& help,
+                     const std::string& type, const Bounds& bounds) const {
+  std::visit(
+      [&](auto value) {
+        using Value = typename decltype(value)::type;
+        CLI::Option* option =
+            placed(app_->add_option(name == "--out" ? "-o,--out" : name, value.get(), help));
+        option->type_name(type);
+        if constexpr (std::is_same_v<Value, Numbers>)
+          option->delimiter(',')->allow_extra_args(false);
+        if constexpr (std::is_arithmetic_v<Value> || std::is_same_v<Value, Numbers>)
+          option->check(within(bounds));
+      },
+      place);
+}
+
+void Command::repeatable(const std::string& name, Words& values, const std::string& help,
+                         const std::string& type) const {
+  placed(app_->add_option(name, values, help))->type_name(type)->allow_extra_args(false);
+}
+
+void Command::alternatives(const std::string& name, std::string& value,
+                           const std::string& help) const {
+  placed(app_->add_option(name, value, help))
+      ->type_name("REGEX")
+      ->transform([](std::string text) {
+        std::replace(text.begin(), text.end(), ',', '|');
+        return text;
+      })
+      ->delimiter('|')  // joins them again
+      ->multi_option_policy(CLI::MultiOptionPolicy::Join);
+}
+
+void Command::byte_count(const std::string& name, double& value, const std::string& help) const {
+  placed(app_->add_option(name, value, help))
+      ->transform(CLI::AsSizeValue(false).description(""))
+      ->type_name("BYTES")
+      ->check(within({.least = 1 << 20}));
+}
+
+void Command::flag(const std::string& name, bool& value, const std::string& help) const {
+  placed(app_->add_flag(name, value, help));
+}
+
+void Command::require(std::initializer_list<const char*> names) const {
+  for (const char* name : names) app_->get_option(name)->required();
+}
+
+std::string Command::one_typed() const {
+  for (const CLI::Option* option : app_->get_options()) {
+    if (option->get_group() == group_ && option->count() > 0) return option->get_name();
+  }
+  return "";
+}
+
 }  // namespace harness
 
 int main(int argc, char** argv) {

@@ -161,12 +161,11 @@ std::optional<Pattern> pattern_of(const std::string& option, const std::string& 
 
 namespace {
 
-// Ends the step ladders of all sweeps at `finest`.
 void cut_ladders(Suite& suite, double finest) {
   for (SweepSpec& sweep : suite.sweeps) {
     if (finest > sweep.coarsest)
-      throw UsageError("--finest " + number_text(finest) + " leaves no step: the ladder of " +
-                       sweep.scene + " begins at " + number_text(sweep.coarsest) + " s");
+      throw UsageError(concat("--finest ", finest, " leaves no step: the ladder of ", sweep.scene,
+                              " begins at ", sweep.coarsest, " s"));
     sweep.finest = finest;
   }
 }
@@ -189,7 +188,6 @@ void put_in_scene(json& sweeps, const SweepOptions& options) {
   sweeps.push_back(std::move(sweep));
 }
 
-// The suite as the options change it.
 Suite edited_suite(const std::string& path, const SweepOptions& options) {
   const SceneParameters given = options.given_parameters();
   if (!given.empty() && options.scene.empty()) throw UsageError("--set goes with --scene");
@@ -281,10 +279,9 @@ std::map<std::string, SceneOfReference> without_reference(const std::vector<Sear
 }
 
 std::string reference_text(const Reference& reference) {
-  return reference.method + " against " + reference.second_method + ": known to " +
-         number_text(100 * headline_error) + " % for " +
-         number_text(reference.known_until(headline_error)) + " of " +
-         number_text(reference.duration()) + " s";
+  return concat(reference.method, " against ", reference.second_method, ": known to ",
+                100 * headline_error, " % for ", reference.known_until(headline_error), " of ",
+                reference.duration(), " s");
 }
 
 }  // namespace harness

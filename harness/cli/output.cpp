@@ -35,8 +35,7 @@ bool exists(const std::string& path) {
   return fs::exists(path, error);
 }
 
-// What must agree for one run to go on where another stopped. context: machine_context(), and in
-// "selection" the options that choose points.
+// What must agree for one run to continue another. context: machine_context() and "selection".
 json identity(const json& context, const json& suite) {
   const json& build = context.at("build");
   return {{"processor", context.at("cpu_model")},
@@ -57,8 +56,7 @@ void check_same(const OutputOptions& options, const std::string& path, const jso
                      "; --resume --force continues nevertheless");
 }
 
-// The context of the run that this one continues, or null. None: the result is complete already,
-// and the journal is untouched.
+// The context of the run that this one continues, or null. None: that result is complete already.
 std::optional<json> begin_journal(const OutputOptions& options, const std::string& out,
                                   Journal& journal, const Undertaking& run) {
   const json mine = identity(run.context, run.suite);

@@ -1,6 +1,5 @@
-// Films: vertex positions of a scene at the frames of a film, by several solvers; ray-traced
-// pictures (Embree) of every run by one camera, with strain as colour and yarns as lines on the
-// cloth; and files for other programs.
+// Films: positions of a scene at the frames of a film, by several solvers; ray-traced pictures
+// (Embree) of them by one camera, with strain as colour and yarns as lines; and files to export.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -16,8 +15,6 @@
 
 namespace harness {
 
-// ---- runs (record.cpp) ----
-
 struct FilmSpec {
   std::string scene;
   SceneParameters parameters;  // complete
@@ -27,7 +24,6 @@ struct FilmSpec {
   double frames_per_second = 30;
 };
 
-// One run.
 struct FilmRun {
   std::string solver, label;
   double strain_limit = 0;
@@ -51,14 +47,10 @@ struct Recording {
 // Number of frames of the whole film, including the one at the start.
 std::size_t frames_in(const FilmSpec& spec);
 
-// Springs get the stiffness that keeps the limit. told is called after every frame. Throws
-// Interrupted.
+// Springs get the stiffness that keeps the limit. Calls told after each frame. Throws Interrupted.
 Recording record(const FilmSpec& spec, const std::function<void(const FilmRun&)>& told);
 
-// The body's vertices at a frame.
 inextensible::Positions body_at(const Recording& recording, std::size_t frame);
-
-// ---- the camera ----
 
 struct View {
   Eigen::Vector3d centre, eye;         // m
@@ -68,14 +60,12 @@ struct View {
   double tangent = 1;                  // of half the angle that a picture's width covers
 
   int height(int width) const;  // pixels
-  // The direction from the eye through a point of the picture: x from -1 (left) to 1, y from -1
-  // (below) to 1.
+  // The direction from the eye through x from -1 (left) to 1 and y from -1 (below) to 1.
   Eigen::Vector3d ray(double x, double y) const;
 };
 
-// Sees the body and the cloth of all runs at these frames. Cloth that falls far from the body (or
-// from its start) leaves the picture instead of making it small. A run that has ended early is
-// shown at its last frame.
+// Sees the body and the cloth of all runs at these frames, or at the last one of a run that has
+// ended. Cloth that falls far leaves the picture instead of making it small.
 View view_of(const Recording& recording, const std::vector<std::size_t>& frames);
 
 // ---- light and colours (tracer.cpp) ----
@@ -102,11 +92,8 @@ struct Pixels {
   std::vector<std::uint8_t> rgb;  // rows from above, sRGB
 };
 
-// Takes samples x samples rays a pixel, in the same pattern for every pixel, so that flat cloth has
-// one shade. Safe to call from several threads.
+// Takes samples x samples rays a pixel, in one pattern for all. Safe to call from several threads.
 Pixels trace(const Shot& shot, const View& view, int width, int samples);
-
-// ---- pictures ----
 
 struct PictureSpec {
   std::vector<std::size_t> frames;  // in rising order
@@ -117,17 +104,14 @@ struct PictureSpec {
 Shot shot_of(const Recording& recording, const View& view, std::size_t take, std::size_t frame,
              int width);
 
-// Writes <take>-<frame>.ppm for each frame that a run has (its last one if it ended early) into an
-// existing folder, using all cores, and film.json, which plots/film.py reads. Throws FileError,
-// Interrupted.
+// Writes <take>-<frame>.ppm for each frame that a run has (or its last one) into a folder, using
+// all cores, and film.json, which plots/film.py reads. Throws FileError, Interrupted.
 void write_pictures(const std::string& folder, const Recording& recording, const PictureSpec& spec,
                     const std::function<void(std::size_t done, std::size_t all)>& told);
 
-// ---- for other programs (exports.cpp) ----
-
 // Writes a run into an existing folder and returns the paths to open. By the ending:
-//   .obj  Wavefront OBJ, one file a frame (<name>-0001.obj ...), faces for cloth, lines for chains
-//   .pvd  VTK XML for ParaView: a .vtp a frame with every edge's strain, and a .pvd that plays them
+//   .obj  Wavefront OBJ, one file a frame (<name>-0001.obj ...), faces for cloth, lines for chains;
+//         ParaView opens the files as a series
 //   .pc2  the first frame as OBJ, and a point cache for Blender's modifier "Mesh Cache"
 // A body has files of its own, <name>-body...: one if it does not move, else as many as the cloth.
 std::vector<std::string> write_run(const Recording& recording, const FilmRun& take,

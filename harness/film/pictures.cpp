@@ -17,7 +17,10 @@
 
 namespace harness {
 
+using Eigen::Vector3d;
+using inextensible::Positions;
 using nlohmann::json;
+using Box = Eigen::AlignedBox3d;
 
 namespace {
 
@@ -68,8 +71,7 @@ std::vector<std::uint8_t> yarns_of(const Scene& scene) {
   return sides;
 }
 
-// Sag of each mark at each frame: how far below the height where it would hang if nothing
-// stretched, m.
+// Sag of each mark at each frame below where it would hang if nothing stretched, m.
 json sags(const Scene& scene, const FilmRun& take) {
   json all = json::object();
   for (const Scene::Mark& mark : scene.marks) {
@@ -95,6 +97,37 @@ void on_all_cores(std::size_t count, const std::function<void(std::size_t)>& wor
     others.push_back(std::async(std::launch::async, loop));
   loop();
   for (std::future<void>& other : others) other.get();
+}
+
+constexpr double half_angle = 12 * std::numbers::pi / 180;
+constexpr double margin = 1.06;
+// Distance up to which cloth stays in view, over the radius of the start: with a body, and without.
+constexpr double near_body = 1.1, near_start = 3;
+
+std::vector<Vector3d> in_sight(const Recording& recording, const std::vector<std::size_t>& frames) {
+  const Positions& start = recording.takes.at(0).frames.at(0);
+  const bool body = !recording.body.vertices.empty();
+  const Positions body_start = body ? body_at(recording, 0) : start;
+  const Vector3d at_first =
+      Box(body_start.rowwise().minCoeff(), body_start.rowwise().maxCoeff()).center();
+  double reach = 0;
+  for (const Positions* x : {&start, &body_start})
+    reach = std::max(reach, (x->colwise() - at_first).colwise().norm().maxCoeff());
+  const double followed = (body ? near_body : near_start) * reach;
+  std::vector<Vector3d> all;
+  for (const FilmRun& take : recording.takes) {
+    for (const std::size_t shown : frames) {
+      const std::size_t frame = std::min(shown, take.frames.size() - 1);
+      Vector3d middle = at_first;
+      if (!recording.body_poses.empty())
+        middle = recording.body_poses.at(frame)(recording.body_poses[0].inverse()(middle));
+      for (const auto& point : take.frames[frame].colwise())
+        if ((point - middle).norm() <= followed) all.emplace_back(point);
+      const Positions around = body_at(recording, frame);  // empty where there is no body
+      for (const auto& corner : around.colwise()) all.emplace_back(corner);
+    }
+  }
+  return all;
 }
 
 }  // namespace
@@ -159,49 +192,6 @@ void write_pictures(const std::string& folder, const Recording& recording, const
       {"legend_end", legend_end}};
   write_atomically(folder + "/film.json", compact(header) + "\n");
 }
-
-// ---- The camera ----
-
-namespace {
-
-using Eigen::Vector3d;
-using inextensible::Positions;
-
-constexpr double half_angle = 12 * std::numbers::pi / 180;
-constexpr double margin = 1.06;
-// Distance up to which cloth stays in view, over the radius of the start: with a body, and without.
-constexpr double near_body = 1.1, near_start = 3;
-
-using Box = Eigen::AlignedBox3d;
-
-// All points that the camera must see.
-std::vector<Vector3d> in_sight(const Recording& recording, const std::vector<std::size_t>& frames) {
-  const Positions& start = recording.takes.at(0).frames.at(0);
-  const bool body = !recording.body.vertices.empty();
-  const Positions body_start = body ? body_at(recording, 0) : start;
-  const Vector3d at_first =
-      Box(body_start.rowwise().minCoeff(), body_start.rowwise().maxCoeff()).center();
-  double reach = 0;
-  for (const Positions* x : {&start, &body_start})
-    reach = std::max(reach, (x->colwise() - at_first).colwise().norm().maxCoeff());
-  const double followed = (body ? near_body : near_start) * reach;
-  std::vector<Vector3d> all;
-  for (const FilmRun& take : recording.takes) {
-    for (const std::size_t shown : frames) {
-      const std::size_t frame = std::min(shown, take.frames.size() - 1);
-      Vector3d middle = at_first;
-      if (!recording.body_poses.empty())
-        middle = recording.body_poses.at(frame)(recording.body_poses[0].inverse()(middle));
-      for (const auto& point : take.frames[frame].colwise())
-        if ((point - middle).norm() <= followed) all.emplace_back(point);
-      const Positions around = body_at(recording, frame);  // empty where there is no body
-      for (const auto& corner : around.colwise()) all.emplace_back(corner);
-    }
-  }
-  return all;
-}
-
-}  // namespace
 
 int View::height(int width) const {
   return std::max(1, static_cast<int>(std::lround(width * aspect)));

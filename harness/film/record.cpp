@@ -48,9 +48,9 @@ constexpr std::int64_t spare_iterations = 500'000, iterations_per_step = 10'000;
 std::string too_much_work(const inextensible::WorkCounters& work, long steps) {
   const std::int64_t tries = work.steps + work.rejected_steps;
   if (tries > spare_tries + tries_per_step * steps)
-    return std::to_string(tries) + " tries of steps for " + std::to_string(steps) + " steps";
+    return concat(tries, " tries of steps for ", steps, " steps");
   if (work.iterations > spare_iterations + iterations_per_step * steps)
-    return std::to_string(work.iterations) + " iterations for " + std::to_string(steps) + " steps";
+    return concat(work.iterations, " iterations for ", steps, " steps");
   return "";
 }
 
@@ -110,8 +110,7 @@ FilmRun take_of(const FilmSpec& spec, const Scene& scene, double energy_bound,
   return take;
 }
 
-// A moving body does work: it can throw cloth at no more than twice its own speed, as an elastic
-// impact does, and lift it as far as it rises itself.
+// A moving body can throw cloth at twice its own speed, as an elastic impact does, and lift it.
 double energy_bound_of(const Recording& recording) {
   const Scene& scene = recording.scene;
   if (std::isfinite(scene.energy_bound)) return scene.energy_bound;

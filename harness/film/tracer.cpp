@@ -41,8 +41,6 @@ Matrix3Xd normals_of(const Positions& x, const Triangles& triangles) {
   return sums;
 }
 
-// ---- Embree ----
-
 struct Release {
   void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
   void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
@@ -113,9 +111,6 @@ double open(RTCScene scene, const Vector3d& from, const Vector3d& to, double beg
   return query.tfar > 0 ? 1 : 0;
 }
 
-// ---- Light ----
-
-// The nearest intersection of a ray.
 struct Hit {
   double distance = std::numeric_limits<double>::infinity();
   unsigned geometry = 0, primitive = 0;
@@ -123,7 +118,6 @@ struct Hit {
   Vector3d face = Vector3d::UnitY();  // normal of what was hit, not of length 1
 };
 
-// What a ray sees of cloth or body.
 struct Surface {
   Vector3d point, normal, colour;
   double shine = 0;

@@ -1,12 +1,10 @@
 // Drives a scene: where a method starts it, and its steps to the end, for any observer.
 #pragma once
 
-#include <algorithm>
 #include <concepts>
 #include <functional>
 #include <limits>
 #include <optional>
-#include <type_traits>
 
 #include "harness/base/clock.h"
 #include "harness/base/interrupt.h"
@@ -17,8 +15,7 @@
 
 namespace harness {
 
-// Where a method begins to take steps of h seconds: half a step back where its velocities are those
-// of the middle of a step.
+// Where a method begins to take steps of h: half a step back if its velocities are mid-step ones.
 inline inextensible::State start_from(const inextensible::Problem& problem,
                                       const inextensible::State& state,
                                       const inextensible::Backend& backend, double h) {

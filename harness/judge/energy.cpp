@@ -64,15 +64,13 @@ double EnergyRecord::settle(const Instant& at, double kinetic) {
 
 std::string energy_gained(const EnergyRecord& energy, double bound, double seconds) {
   if (energy.gain() > bound)
-    return "energy " + number_text(energy.gain(), 3) +
-           " of weight times size above the start's at step " + std::to_string(energy.gain_step()) +
-           " (t = " + number_text(energy.gain_time(), 4) + " s), permitted are " +
-           number_text(bound);
+    return concat("energy ", number_text(energy.gain(), 3), " of weight times size above the ",
+                  "start's at step ", energy.gain_step(), " (t = ", energy.gain_time(),
+                  " s), permitted are ", bound);
   const double in_all = bound * std::max(1.0, seconds);
   if (energy_can_only_fall(energy.problem()) && energy.rise() > in_all)
-    return "energy rose by " + number_text(energy.rise(), 3) +
-           " of weight times size in all, where it can only fall; permitted are " +
-           number_text(in_all);
+    return concat("energy rose by ", number_text(energy.rise(), 3), " of weight times size in all,",
+                  " where it can only fall; permitted are ", in_all);
   return "";
 }
 

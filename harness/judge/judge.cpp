@@ -77,9 +77,8 @@ void Judge::add_errors(Measures& measures) const {
     measures.unknown_because =
         "the reference is not known to within " + level + " at any sample time";
   } else if (at.samples < wanted) {
-    measures.unknown_because = "the run ended after " + std::to_string(at.samples) + " of " +
-                               std::to_string(wanted) +
-                               " samples at which the reference is known to within " + level;
+    measures.unknown_because = concat("the run ended after ", at.samples, " of ", wanted,
+                                      " samples at which the reference is known to within ", level);
   } else {
     measures.trajectory = at.distance;
     measures.trajectory_mean = at.mean;
@@ -125,12 +124,8 @@ void Judge::sample(const Positions& filtered, const State& state) {
   for (const auto& mirror : scene_.mirrors) {
     const Eigen::Matrix3d reflect =
         Eigen::Matrix3d::Identity() - 2 * mirror.normal * mirror.normal.transpose();
-    double worst = 0;
-    for (Eigen::Index v = 0; v < state.x.cols(); ++v) {
-      const auto image = mirror.image[v];
-      worst = std::max(worst, (reflect * state.x.col(v) - state.x.col(image)).squaredNorm());
-    }
-    raise(running_.symmetry_defect, std::sqrt(worst) / scene_.size);
+    const Positions off = reflect * state.x - state.x(Eigen::all, mirror.image);
+    raise(running_.symmetry_defect, off.colwise().norm().maxCoeff() / scene_.size);
   }
 }
 
@@ -177,8 +172,6 @@ Measures Judge::finish() {
     measures.moved = std::sqrt(moved_squares_ / reference_moved_squares_);
   return measures;
 }
-
-// ---- The residual ----
 
 void ResidualProbe::iterate(const inextensible::EdgeConstraints& edges, int j,
                             const inextensible::Positions& x, const Eigen::VectorXd& multipliers) {

@@ -1,5 +1,4 @@
-// The harness judges, never the solver: strain, energy, symmetry and errors recomputed from
-// positions, off the clock.
+// The harness judges: strain, energy, symmetry and errors, from positions and off the clock.
 #pragma once
 
 #include <memory>

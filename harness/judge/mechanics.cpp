@@ -4,10 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <set>
 #include <utility>
-#include <vector>
 
 #include "solvers/problem/forces.h"
 
@@ -20,8 +18,7 @@ using inextensible::State;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// The vertices along the hem, in order: sides of one triangle only. Empty where there is not one
-// loop.
+// The vertices along the hem (sides of one triangle only), in order. Empty: it is not one loop.
 std::vector<int> hem_of(const Scene& scene) {
   std::set<std::pair<int, int>> open;  // sides of one triangle so far
   for (const auto& corners : scene.triangles) {

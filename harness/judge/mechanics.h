@@ -43,12 +43,10 @@ void raise(double& figure, double value);
 
 // ---- The shape of a cloth at rest ----
 
-// m^2, of the cloth's shadow on a horizontal plane as far as `reach` (m) from the y axis along x
-// and z: counted on a raster of pixels x pixels.
+// m^2, of the shadow on a horizontal plane within `reach` (m) of the y axis, on pixels x pixels.
 double shadow_area(const Scene& scene, const inextensible::Positions& x, double reach, int pixels);
 
-// How often the hem rises and falls again by 2 % of the size or more on one way around the cloth. 0
-// where its triangles have no single hem.
+// How often the hem rises and falls by 2 % of the size or more on one way round. 0: no single hem.
 int count_folds(const Scene& scene, const inextensible::Positions& x);
 
 // Potential energy over weight times size, mean height of the corners over size, area of the shadow

@@ -19,7 +19,6 @@ namespace {
 
 constexpr const char* reference_schema = "inextensible-reference/2";
 
-constexpr FieldTraits may_be_absent{.nullable = true};
 constexpr auto reference_fields = std::tuple{
     field("scene", &Reference::scene, "", "its name"),
     field("scene_parameters", &Reference::parameters, "", "all of the scene's"),
@@ -45,8 +44,7 @@ std::string mismatch(const Reference& r) {
   const int vertices = type->counts(r.parameters).first;
   for (const Positions& x : r.positions) {
     if (x.cols() != vertices)
-      return "positions of " + std::to_string(x.cols()) + " vertices, the scene has " +
-             std::to_string(vertices);
+      return concat("positions of ", x.cols(), " vertices, the scene has ", vertices);
   }
   const std::size_t times = r.times.size();
   const bool agree =

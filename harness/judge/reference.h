@@ -28,8 +28,7 @@ struct Reference {
   std::vector<double> gap_max;  // the same in the maximum norm
   // The parts whose largest is the gap; empty in references made without them.
   std::map<std::string, std::vector<double>> gap_parts;
-  // How far the routes' last positions are apart in what rest_difference compares; empty where the
-  // scene is not known to its end.
+  // By how much the routes' shapes differ at the end (rest_difference); empty: it is not known.
   std::map<std::string, double> rest_gap;
   double valid_until = 0;   // s: the last sample before the gap exceeds 1 % of the scene's size
   double energy_drift = 0;  // of the first route, where the scene conserves energy
@@ -56,9 +55,8 @@ double max_distance(const Scene& scene, const inextensible::Positions& x,
 constexpr double sample_interval = 0.04;  // s; every step of the usual ladders meets it
 std::vector<double> sample_times(double duration);
 
-// The file a reference of this scene is kept in: chain-n80.json, or with a hash of the parameters
-// that are not the defaults, mesh-9f3c...-n1.json of a scene made of files. Duration does not
-// count.
+// The file of a scene's reference: chain-n80.json, or with a hash of the parameters that are not
+// the defaults (but duration), or mesh-9f3c...-n1.json of a scene made of files.
 std::string reference_name(const std::string& scene, const SceneParameters& complete);
 
 nlohmann::json to_json(const Reference& reference);

@@ -56,8 +56,7 @@ const Route singular_route{"fast_projection@bdf2", 1e-6, 1, some_passes};
 // chance has to be small beside the creep of cloth that hangs by friction.
 const inextensible::Settings one_projection{{"min_iterations", 1.0}};
 const Route implicit_route{"fast_projection@bdf2", 1e-5, 1, one_projection};
-// Edges as stiff springs, solved with all other forces at once: strains of 1e-4 under the weight of
-// the whole scene.
+// Edges as stiff springs, solved with all other forces: strains of 1e-4 under the whole weight.
 constexpr double spring_stiffness = 1e4;  // over the weight
 // Friction inside the solve is not a smooth function of the start, and RATTLE's small steps along
 // old directions get stuck on it; the passes that correct it set the limit.
@@ -88,8 +87,7 @@ Routes contact_routes(const Scene& scene, double h) {
   return {first, {"icd", first.limit, 1}, {}};
 }
 
-// Two starts whose coordinates differ from the scene's by random amounts of up to `by` metres;
-// pinned vertices stay.
+// Two starts whose coordinates differ from the scene's by up to `by` metres; pins stay.
 std::vector<State> moved_starts(const Scene& scene, double by) {
   const std::unique_ptr<gsl_rng, decltype(&gsl_rng_free)> random(gsl_rng_alloc(gsl_rng_mt19937),
                                                                  gsl_rng_free);
@@ -151,9 +149,9 @@ class ReferenceMaker {
     const int coarsest = angles ? 4 : 8;
     const double steps = sample_interval / (coarsest * h);
     if (!(steps >= 1) || std::abs(steps - std::round(steps)) > 1e-6)
-      throw UsageError("--finest is " + number_text(h) + " s: " + number_text(coarsest) +
-                       " of such steps must divide the sample interval, " +
-                       number_text(sample_interval) + " s");
+      throw UsageError(concat("--finest is ", h, " s: ", coarsest,
+                              " of such steps must divide the sample interval, ", sample_interval,
+                              " s"));
     return angles ? by_angles(h) : by_contact_routes(h);
   }
 
@@ -162,8 +160,8 @@ class ReferenceMaker {
   // the number of the start `from`, 0 for the scene's own.
   const Path& path(const Route& route, double h, const State& from, int start) {
     const std::size_t samples = r_.times.size();
-    const std::string name = route.name() + ", step " + number_text(h, 17) + " s, start " +
-                             std::to_string(start) + ", " + std::to_string(samples) + " samples";
+    const std::string name = concat(route.name(), ", step ", number_text(h, 17), " s, start ",
+                                    start, ", ", samples, " samples");
     const auto compute = [&] {
       const auto stepper = stepper_of(route, scene_);
       State state = start_from(*scene_.problem, from, *inextensible::find_backend(route.solver), h);
@@ -178,9 +176,8 @@ class ReferenceMaker {
                                         return true;
                                       });
       if (driven.end == DriveState::End::refused)
-        runs_.tell(
-            words + "stopped before t = " + number_text(r_.times[driven.steps / per_sample]) +
-            " s: " + inextensible::to_string(driven.result.status) + ", " + driven.result.detail);
+        runs_.tell(concat(words, "stopped before t = ", r_.times[driven.steps / per_sample],
+                          " s: ", to_string(driven.result.status), ", ", driven.result.detail));
       return run;
     };
     return runs_.run(name, compute).path;
@@ -190,15 +187,15 @@ class ReferenceMaker {
   const Path& whole_path(const Route& route, double h) {
     const Path& found = path(route, h);
     if (found.size() < r_.times.size())
-      throw UsageError("no reference: " + route.solver + " with h = " + number_text(h) +
-                       " s fails before t = " + number_text(r_.times[found.size()]) +
-                       " s (a smaller --finest may help)");
+      throw UsageError(concat("no reference: ", route.solver, " with h = ", h,
+                              " s fails before t = ", r_.times[found.size()],
+                              " s (a smaller --finest may help)"));
     return found;
   }
 
   const RouteRun& swing(double disturbance, double tolerance) {
-    const std::string name = "pendulum, start moved by " + number_text(disturbance) +
-                             ", tolerance " + number_text(tolerance);
+    const std::string name =
+        concat("pendulum, start moved by ", disturbance, ", tolerance ", tolerance);
     return runs_.run(name, [&] {
       runs_.tell("pendulum in angles, tolerance " + number_text(tolerance) + " ...");
       Pendulum pendulum = pendulum_of(scene_, disturbance);
@@ -233,8 +230,7 @@ class ReferenceMaker {
         "N-link pendulum in angles, GSL rk8pd, tolerance " + number_text(pendulum_tolerance);
     r_.second_method = route.name() + ", steps down to " + number_text(h) +
                        " s, Richardson extrapolated with order " + std::to_string(route.order);
-    // An integrator that chooses its steps has no half of them: its tolerance is ten times as
-    // large.
+    // An integrator that chooses its steps has no half of them: a tenth of its precision instead.
     const Path& half = swing(0, 10 * pendulum_tolerance).path;
     std::vector<GapPart> parts{{"routes", &swung.path, &second},
                                {"half_step", &swung.path, &half},
@@ -271,17 +267,17 @@ class ReferenceMaker {
     add_gaps(parts);
     r_.method = first.name() + ", step " + number_text(h) + " s";
     r_.second_method =
-        other.name() +
-        (settles ? ", step " + number_text(finest) + " s"
-                 : ", steps " + number_text(2 * finest) + " and " + number_text(finest) +
-                       " s, Richardson extrapolated with order " + std::to_string(other.order));
+        other.name() + (settles ? concat(", step ", finest, " s")
+                                : concat(", steps ", 2 * finest, " and ", finest,
+                                         " s, Richardson extrapolated with order ", other.order));
     if (springs)
-      r_.second_method += "; " + third->solver + ", EA = " +
-                          number_text(std::get<double>(third->settings.at("stiffness")), 3) +
-                          " N, step " + number_text(8 * h) + " s";
+      r_.second_method +=
+          concat("; ", third->solver,
+                 ", EA = ", number_text(std::get<double>(third->settings.at("stiffness")), 3),
+                 " N, step ", 8 * h, " s");
     if (second.size() < r_.times.size())
-      r_.second_method += ", until it fails after t = " +
-                          number_text(second.empty() ? 0.0 : r_.times[second.size() - 1]) + " s";
+      r_.second_method += concat(
+          ", until it fails after t = ", second.empty() ? 0.0 : r_.times[second.size() - 1], " s");
     if (r_.valid_until == r_.duration() && !scene_.triangles.empty()) {
       for (const GapPart& part : parts)
         for (const auto& [name, value] :

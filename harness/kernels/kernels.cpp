@@ -2,19 +2,17 @@
 // step can be explained from its parts. Names: piece/solver/scene:n. Matrices are those of a cloth
 // in mid-drape (above 150 vertices a side soon after its start) and a chain in mid-swing, at the
 // positions that a filter gets. Items are constrained edges, or vertices. collision_pass and the
-// solves include a copy of their input, a few percent.
-// floor/...: what the core can do at best. floor_ratio compares a pass of strain limiting over all
-// edges with the square root and the division that an edge costs at least; of_peak and
-// of_bandwidth compare flops of a factorization with those of a dense product, and bytes of the
-// factor, read twice by a solve, with the bandwidth at which an array of the factor's size is
-// read (the library prints such ratios with "/s" behind them).
+// solves include a copy of their input, a few percent. floor_ratio compares a pass of strain
+// limiting over all edges with the square root and the division that an edge costs at least;
+// of_peak and of_bandwidth compare flops of a factorization with those of a dense product, and
+// bytes of the factor, read twice by a solve, with the bandwidth at which an array of the factor's
+// size is read (the library prints such ratios with "/s" behind them).
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
 #include <map>
 #include <memory>
@@ -55,9 +53,8 @@ double shortest(int rounds, Work work) {
   return best;
 }
 
-// A square root and a division an edge, independent of each other, in single precision and in the
-// first-level cache: what no pass that corrects every edge can go below, s for one edge. Measured
-// at the first call.
+// s for a square root and a division, independent of others, in single precision and the
+// first-level cache: no pass that corrects every edge is faster. Measured at the first call.
 double sqrt_div_seconds() {
   constexpr int passes = 20, edges = 1024;
   static const double all = shortest(1000, [] {
@@ -104,11 +101,8 @@ double peak_flops() {
   return 2.0 * size * size * size / seconds;
 }
 
-// ---- The scenes ----
-
-// A scene after some steps of fast projection: deformed, in contact where there is something to
-// touch. Made once: Google Benchmark calls each benchmark several times to find its number of
-// iterations.
+// A scene after some steps of fast projection: deformed, and in contact if there is an obstacle.
+// Made once: Google Benchmark calls each benchmark several times.
 struct Moment {
   Scene scene;
   double h;  // s
@@ -139,7 +133,6 @@ const Moment& moment(const std::string& scene, int n) {
 Counter rate(double each) { return Counter(each, Counter::kIsIterationInvariantRate); }
 Counter average(double all) { return Counter(all, Counter::kAvgIterations); }
 
-// Items are constrained edges, or vertices.
 void per_item(benchmark::State& state, int items, const char* what = "s_per_edge") {
   state.SetItemsProcessed(state.iterations() * items);
   state.counters[what] = Counter(items, Counter::kIsIterationInvariantRate | Counter::kInvert);
@@ -302,8 +295,6 @@ void linear_solver(benchmark::State& state, const std::string& name, bool solve,
     state.counters["of_peak"] = rate(l.solver->factor_flops() / peak_flops());
   }
 }
-
-// ---- All of them ----
 
 template <class Body, class... Arguments>
 benchmark::internal::Benchmark* add(const std::string& name, const Body& body,

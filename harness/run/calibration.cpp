@@ -81,10 +81,9 @@ class StiffnessSearch {
     if (trial.status == PointStatus::timeout) {
       timed_out_ = true;
       found_.status = PointStatus::skipped;
-      found_.detail = "timed out while calibrating: run " + std::to_string(found_.runs) +
-                      ", stiffness " + number_text(stiffness) + " N, strain so far " +
-                      number_text(trial.strain) + ", " + number_text(trial.seconds) +
-                      " s of stepping; " + trial.detail;
+      found_.detail = concat("timed out while calibrating: run ", found_.runs, ", stiffness ",
+                             stiffness, " N, strain so far ", trial.strain, ", ", trial.seconds,
+                             " s of stepping; ", trial.detail);
       return std::log(calibration_cut_short);
     }
     if (!strain_counts(trial.status)) {
@@ -140,9 +139,8 @@ double nominal_seconds(const inextensible::WorkCounters& work, int edges) {
          2e-9 * static_cast<double>(work.back_solves) * work.factor_nonzeros;
 }
 
-// The scene's force is its weight, or m v^2 / (2 size) of what flies without one. The number of
-// strands that share it is the length of all edges over the scene's size: one in a chain, two for
-// each row of a cloth.
+// The scene's force is its weight, or m v^2 / (2 size) of what flies without one. As many strands
+// share it as sizes fit into the length of all edges: one in a chain, two a row of a cloth.
 double first_stiffness(const Scene& scene, double strain_limit) {
   double length = 0;
   for (const double l : scene.problem->rest_length()) length += l;

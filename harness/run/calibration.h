@@ -37,8 +37,7 @@ struct Calibration {
 Calibration calibrate_stiffness(double strain_limit, double guess,
                                 const std::function<CalibrationTrial(double stiffness)>& run);
 
-// s: how long a spring method's counted work takes on a usual machine, within a factor of two.
-// Unlike measured time it is always the same.
+// s, of a spring method's counted work on a usual machine, within a factor of two; repeatable.
 double nominal_seconds(const inextensible::WorkCounters& work, int edges);
 
 // N: an estimate to begin a search from.

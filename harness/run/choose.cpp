@@ -20,15 +20,18 @@ bool within(const PointResult& point, const Wish& wish) {
   return point.ok() && within_error(point.measures, wish.error);
 }
 
+double error_of(const PointResult& point, const Wish& wish) {
+  return error_at(point.measures, wish.error).distance;
+}
+
 std::optional<Pick> pick_of(const PointResult& point, const Wish& wish) {
   const auto frame = std::ranges::find_if(point.frame_times, [&wish](const FrameTime& f) {
     return std::abs(f.rate - wish.rate) < 1e-6;
   });
   if (frame == point.frame_times.end()) return {};
-  return Pick{&point, *frame, error_at(point.measures, wish.error).distance};
+  return Pick{&point, *frame, error_of(point, wish)};
 }
 
-// The limits of a part of the work that ends at `share` of the time.
 std::function<bool()> stop_at(const ChooseLimits& limits, double share) {
   return [&limits, until = share * limits.seconds] {
     return limits.interrupted() || limits.elapsed() >= until;
@@ -107,8 +110,7 @@ Trials try_contestants(const Suite& suite, const std::vector<Search>& searches, 
   for (const std::size_t i : ladder_order(trials.screened)) ordered.push_back(searches[i]);
   SweepEvents until = events;
   until.interrupted = stop_at(limits, search_share);
-  // On a busy machine, taking disturbed samples again would take most of the time. Finalists have
-  // more samples.
+  // On a busy machine, retaking samples takes most of the time. Finalists have more samples.
   const auto run_once = [&run](const PointSpec& spec, RunLimits own) {
     own.most_retaken = 0;
     return run(spec, own);
@@ -152,17 +154,14 @@ std::string why_not(const std::string& contestant, const Trials& trials, const W
     if (point.spec.contestant != contestant) continue;
     if (within(point, wish)) return "";
     if (!point.ok()) failed = &point;
-    const auto error = [&wish](const PointResult& p) {
-      return error_at(p.measures, wish.error).distance;
-    };
-    if (point.ok() && (!closest || error(point) < error(*closest))) closest = &point;
+    if (point.ok() && (!closest || error_of(point, wish) < error_of(*closest, wish)))
+      closest = &point;
   }
   const auto at = [](const PointResult& point) {
     return " at " + step_text(point.spec.step) + " s";
   };
   if (closest)
-    return "error " + number_text(100 * error_at(closest->measures, wish.error).distance, 2) +
-           " %" + at(*closest);
+    return "error " + number_text(100 * error_of(*closest, wish), 2) + " %" + at(*closest);
   if (failed)
     return std::string(to_string(failed->status)) + at(*failed) + ": " + shortened(failed->detail);
   const auto seen = std::ranges::find_if(

@@ -1,5 +1,4 @@
-// Chooses a solver and step for a scene: tries the contestants within a given time and picks the
-// fastest that is accurate enough.
+// Chooses the fastest solver and step that is accurate enough for a scene, within a given time.
 #pragma once
 
 #include <functional>
@@ -33,9 +32,8 @@ struct Trials {
 // first; then those that missed it; then the rest.
 std::vector<std::size_t> ladder_order(const std::vector<PointResult>& screened);
 
-// Screens all contestants, runs their ladders in ladder_order(), and takes more samples of the
-// fastest runs. A run in progress is stopped when the time is over. Throws Interrupted if
-// limits.interrupted().
+// Screens all contestants, runs their ladders in ladder_order(), and samples the fastest runs
+// again. The run in progress is stopped when the time is over. Throws Interrupted.
 Trials try_contestants(const Suite& suite, const std::vector<Search>& searches, const Wish& wish,
                        const ChooseLimits& limits, const SweepEvents& events, const Runner& run);
 
@@ -48,8 +46,7 @@ struct Pick {
 // How many of a run's frames keep the budget: 99 % of them, half of them, or fewer.
 enum class Kept { nearly_all, half, fewer };
 
-// The fastest run within strain limit and error among those that keep the budget best. not_by: a
-// contestant to leave out.
+// The fastest run within limit and error that keeps the budget best. not_by: one to leave out.
 std::optional<Pick> fastest(const std::vector<PointResult>& points, const Wish& wish,
                             const std::string& not_by = {});
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <exception>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -20,18 +19,16 @@ namespace {
 using nlohmann::json;
 using End = ChildOutcome::End;
 
-// The point whose child did not come back.
 PointResult lost(const PointSpec& spec, const ChildOutcome& outcome, double timeout) {
-  const std::string place = outcome.step < 0 ? std::string("before the first step")
-                                             : "in step " + std::to_string(outcome.step) +
-                                                   " (t = " + number_text(outcome.time) + " s)";
+  const std::string place = outcome.step < 0
+                                ? "before the first step"
+                                : concat("in step ", outcome.step, " (t = ", outcome.time, " s)");
   PointResult point(spec);
   if (outcome.end == End::timed_out) {
     const bool calibrating = outcome.part == static_cast<int>(RunPart::calibration);
     point.status = calibrating ? PointStatus::skipped : PointStatus::timeout;
-    point.detail = std::string(calibrating ? "timed out while calibrating: " : "") +
-                   "longer than " + number_text(timeout) + " s, stuck " + place + "; ended with " +
-                   signal_text(outcome.code);
+    point.detail = concat(calibrating ? "timed out while calibrating: " : "", "longer than ",
+                          timeout, " s, stuck ", place, "; ended with ", signal_text(outcome.code));
   } else {
     const bool starved = outcome.end == End::killed && outcome.out_of_memory;
     point.status = starved ? PointStatus::out_of_memory : PointStatus::crashed;
@@ -73,8 +70,7 @@ std::vector<Samples> cut_off_repetitions(PointResult& point) {
   return repetitions;
 }
 
-// A search for a stiffness that began elsewhere, since a neighbouring point failed then but not
-// now, is another run.
+// A search for a stiffness that began elsewhere (a neighbour failed then, not now) is another run.
 bool same_start(const PointResult& point, std::optional<double> guess) {
   if (!point.ok() || !point.stiffness) return true;
   return guess ? *guess == point.calibration_guess : std::isnan(point.calibration_guess);

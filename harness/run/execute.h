@@ -28,7 +28,6 @@ Runner isolated(const Runner& inner, double memory);
 // repetition. The journal must outlive the runner.
 Runner journaled(const Runner& inner, Journal& journal);
 
-// Adds the runs of a result file.
 void add_runs_of(const nlohmann::json& result, Journal& journal);
 void forget_failures(Journal& journal);
 std::size_t points_in(const Journal& journal);  // without repetitions

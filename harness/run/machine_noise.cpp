@@ -6,8 +6,7 @@ namespace {
 constexpr std::size_t doubles = 32768;
 constexpr int first_looks = 10;
 
-// A recurrence that waits for every result (a tridiagonal solve), over an array that fills the
-// second-level cache.
+// A recurrence that waits for every result, over an array that fills the second-level cache.
 double recurrence(std::vector<double>& data, int passes) {
   double carried = 1;
   for (int pass = 0; pass < passes; ++pass) {

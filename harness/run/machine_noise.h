@@ -93,7 +93,6 @@ class NoiseProbe {
 
   double spread() const;
   bool noisy() const { return spread() > noisy_from; }
-  // {"at": [...], "seconds": [...], "spread": x, "noisy": b}
   nlohmann::json to_json() const;
 
  private:

@@ -49,7 +49,6 @@ struct Batch {
 
 bool may_be_retaken(const Batch& batch) { return batch.ok() && batch.seconds < longest_retaken; }
 
-// Takes samples of one point.
 struct Sampler {
   const PointResult& point;  // with the previous samples
   const PointRunner& runner;
@@ -60,8 +59,7 @@ struct Sampler {
   Samples& taken;                          // gets the samples
   inextensible::PhaseSeconds phases = {};  // of the filter sample
 
-  // Takes a sample and returns the last run, which may have failed. retaken: earlier tries that
-  // were dropped.
+  // Takes a sample and returns the last run, perhaps a failed one. retaken: tries dropped before.
   Run add(int retaken) {
     if (short_steps) {
       Batch in_phases = batch(least_filter_sample, true);
@@ -106,14 +104,12 @@ struct Sampler {
   }
 };
 
-// Whether the strain limit must be met by a stiffness that is still to be found.
 bool needs_stiffness(const PointRunner& runner) {
   return runner.backend().strain_control == inextensible::StrainControl::stiffness &&
          !runner.spec().settings.contains("stiffness");
 }
 
-// Finds the stiffness that a point's springs need, and adds it to the settings. False: there is
-// none, and the point says why.
+// Adds the stiffness that springs need to the settings. False: none, and the point says why.
 bool calibrate(PointResult& point, const PointRunner& runner, inextensible::Settings& settings,
                std::optional<double> guess) {
   const PointSpec& spec = point.spec;

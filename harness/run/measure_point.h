@@ -1,5 +1,4 @@
-// Runs one point: makes the scene and the solver, finds the stiffness where the solver needs one,
-// steps, judges.
+// Runs one point: makes scene and solver, finds the stiffness of springs, steps, judges.
 #pragma once
 
 #include <functional>
@@ -14,13 +13,11 @@ struct Heartbeat;
 struct Scene;
 
 inline constexpr double least_sample = 0.02;  // s: a thousand times a block of steps
-// s. In longer samples, disturbances of milliseconds hardly show, and two looks of a millisecond
-// say little about the time between them.
+// s. In longer samples, disturbances hardly show, and looks say little about the time between.
 inline constexpr double longest_retaken = 0.25;
 
 inline constexpr double usual_look = 0.1;  // s
 
-// A heartbeat's part.
 enum class RunPart { measured, calibration };
 
 struct RunLimits {

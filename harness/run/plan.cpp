@@ -1,8 +1,6 @@
 #include <algorithm>
-#include <functional>
 #include <map>
 #include <span>
-#include <tuple>
 
 #include "harness/base/errors.h"
 #include "harness/run/measure_point.h"
@@ -51,8 +49,7 @@ constexpr double repeated_of_a_search = 2;
 // Over the timed part of a short run: making the solver, and looks at the machine.
 constexpr double around_a_run = 1.3;
 
-// Time of a simulated second: the time-out if no step succeeds, 0 if the solver does not support
-// the problem.
+// Time of a simulated second: the time-out if no step succeeds, 0 if the solver cannot run it.
 double seconds_per_second(const Search& search, double step, double timeout) {
   PointSpec spec = search.base;
   spec.step = step;

@@ -36,11 +36,9 @@ constexpr double rounding = 1e-6;  // of a frame: times add up their steps
 
 std::string refusal(const inextensible::StepResult& result, std::int64_t step, double time) {
   const bool edge_known = result.worst_edge >= 0 && std::isfinite(result.worst_strain);
-  return "step " + std::to_string(step) + " (t = " + number_text(time) +
-         " s): " + inextensible::to_string(result.status) + ", " + result.detail + " after " +
-         std::to_string(result.iterations) + " iterations" +
-         (edge_known ? "; edge " + std::to_string(result.worst_edge) + " strained by " +
-                           number_text(result.worst_strain)
+  return concat("step ", step, " (t = ", time, " s): ", inextensible::to_string(result.status),
+                ", ", result.detail, " after ", result.iterations, " iterations") +
+         (edge_known ? concat("; edge ", result.worst_edge, " strained by ", result.worst_strain)
                      : "");
 }
 
@@ -159,8 +157,7 @@ class PointRunner::Observed : public Observer {
   bool overstrained(double strain) {
     if (!keeps_strain() || strain <= stop_at_) return false;
     run_.status = !(strain <= diverged_strain) ? PointStatus::diverged : PointStatus::strain_missed;
-    run_.detail = "strain " + std::to_string(strain) + " at step " +
-                  std::to_string(run_.stepper->work().steps - 1);
+    run_.detail = concat("strain ", strain, " at step ", run_.stepper->work().steps - 1);
     return true;
   }
 
@@ -171,7 +168,6 @@ class PointRunner::Observed : public Observer {
            work_patience;
   }
 
-  // Why the drive ended before the scene did.
   void tell_end(const DriveState& driven, double time) {
     using End = DriveState::End;
     if (driven.end == End::arrived) return;
@@ -183,9 +179,9 @@ class PointRunner::Observed : public Observer {
     }
     const bool slow = driven.end == End::stopped;
     run_.status = PointStatus::timeout;
-    run_.detail = "longer than " + number_text(slow ? limits_.hopeless : limits_.timeout) + " s" +
-                  (slow ? ", far above the best time so far" : "") +
-                  "; stopped at t = " + number_text(time) + " s";
+    run_.detail =
+        concat("longer than ", slow ? limits_.hopeless : limits_.timeout, " s",
+               slow ? ", far above the best time so far" : "", "; stopped at t = ", time, " s");
   }
 
   // Judges a run that reached its end.
@@ -207,9 +203,8 @@ class PointRunner::Observed : public Observer {
                     " vertices passed through the body; shorter steps may not";
     } else if (found.moved < least_motion) {
       run_.status = PointStatus::motion_lost;
-      run_.detail = "its vertices moved " + number_text(found.moved, 3) +
-                    " times as far as the reference's, " + number_text(least_motion) +
-                    " are needed";
+      run_.detail = concat("its vertices moved ", number_text(found.moved, 3),
+                           " times as far as the reference's, ", least_motion, " are needed");
     }
   }
 

@@ -75,7 +75,6 @@ struct Neighbour {
 // Where contestants are compared: scene, parameters, limit, and the step in a search of all steps.
 using MeetingPlace = std::tuple<std::string, SceneParameters, double, double>;
 
-// What all searches of a sweep share.
 struct Sweep {
   const Suite& suite;
   const std::vector<Search>& searches;

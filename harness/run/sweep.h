@@ -1,7 +1,6 @@
 // Runs a suite's sweeps. For each (scene, size, limit, solver) the best step is found
-// (step_search.h; a step sweep runs the whole ladder). Then the points that may be best (in a step
-// sweep: all that ran to the end) are repeated in a shuffled order, and the best are chosen from
-// all samples.
+// (step_search.h; a step sweep runs the whole ladder). Points that may be best (in a step sweep:
+// all that succeeded) are repeated in a shuffled order, and the best chosen from all samples.
 #pragma once
 
 #include <functional>
@@ -40,15 +39,12 @@ struct Estimate {
   int timed = 0;       // combinations of scene, size and contestant that took a few steps
 };
 
-// From a few steps of each contestant at each size, as if every search took a handful of runs and
-// repeated one. Mostly right within a factor of three.
+// From a few steps of each contestant and size. Mostly right within a factor of three.
 Estimate estimate(const Suite& suite, const std::vector<Search>& searches);
 
-// s. A point is not repeated further once its runs have taken this long: disturbances average out
-// within long runs.
+// s. Runs that have taken this long are not repeated: disturbances average out within long runs.
 inline constexpr double repeat_for = 10;
 
-// Progress of a sweep.
 struct SweepEvents {
   std::function<void(const PointResult&, std::size_t search, std::size_t searches)> point =
       [](auto&&...) {};

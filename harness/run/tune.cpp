@@ -15,8 +15,6 @@
 namespace harness {
 namespace {
 
-// ---- The search in the space of settings ----
-
 constexpr double none = std::numeric_limits<double>::infinity();  // seconds of what fails
 constexpr double give_up_trial_at = 1.5;                          // times the best seconds
 constexpr double first_reach = 0.3;  // standard deviation of the first moves, over the range
@@ -50,8 +48,6 @@ double moved(const TunedNumber& number, double value, double reach, Random& rand
   return value_at(number, at);
 }
 
-// ---- The times of settings ----
-
 constexpr double give_up_at = 2.5;  // times the time that is known at a place
 constexpr double far_too_long = 4;  // times options.longest_run: no step of a short one takes it
 constexpr int samples = 3;          // of the best steps
@@ -78,8 +74,7 @@ struct Tuner {
   Found leader = {};                      // so far; where the next search begins
   std::map<Values, Found> measured = {};  // the last time
 
-  // Nothing if no step counts with any settings tried. `guess` is tried first and receives the
-  // values found.
+  // Nothing if no step counts with any settings. `guess` is tried first, and gets the values found.
   std::optional<TunedPlace> run(Values& guess) {
     begin(guess);
     if (leader.seconds >= 1e300) draw_start(guess);
@@ -154,8 +149,7 @@ struct Tuner {
     }
   }
 
-  // Where no step counts with the initial settings, the search begins with `guess` or the first
-  // drawn set for which one does.
+  // Where no step counts initially: begins with `guess`, or the first drawn set for which one does.
   void draw_start(const Values& guess) {
     std::mt19937_64 random{1};
     std::uniform_real_distribution<double> position(0, 1);

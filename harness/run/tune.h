@@ -16,7 +16,6 @@
 
 namespace harness {
 
-// A setting to be searched.
 struct TunedNumber {
   std::string name;
   double initial = 0;
@@ -41,8 +40,7 @@ TuneOutcome tune_values(const std::vector<TunedNumber>& numbers, const TuneObjec
                         int budget, const Values& guess = {});
 
 // A value's position in its range, from 0 to 1, and back: by the logarithm of the distance to its
-// bound if it has one; otherwise logarithmic if the range (for counts: of 1 + count) spans a factor
-// of ten.
+// bound if it has one; else logarithmic if the range (of counts: 1 + count) spans a factor of ten.
 double position_of(const TunedNumber& number, double value);
 double value_at(const TunedNumber& number, double position);
 

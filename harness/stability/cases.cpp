@@ -7,7 +7,6 @@
 namespace harness::cases {
 
 using inextensible::Positions;
-using inextensible::Problem;
 
 Draft points(int n, double mass) {
   Draft mesh(n, {{"gravity", g}, {"duration", 0}});
@@ -78,7 +77,7 @@ Draft midpoint_cloth(int n) {
 
 // Springs promise no limit: a stiffness that would keep it in a fall of a few weights.
 Trial trial_of(Scene scene, double step, int steps, double strain_limit) {
-  const Problem& problem = *scene.problem;
+  const inextensible::Problem& problem = *scene.problem;
   Trial trial;
   trial.slack = strain_limit * problem.longest_rest_length();
   trial.step = step;

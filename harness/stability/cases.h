@@ -14,8 +14,7 @@ inline const Eigen::Vector3d along(1, 0, 0), up(0, 1, 0), down(0, -1, 0);
 
 // n vertices in one place, each of `mass` kg, without edges.
 Draft points(int n, double mass);
-// `links` links on a line from the origin along `direction` (unit), 1 m and 1 kg in all; `pinned`
-// at the origin.
+// `links` links along `direction` (unit) from the origin, 1 m and 1 kg in all; `pinned` there.
 Draft chain(int links, const Eigen::Vector3d& direction = along, bool pinned = true);
 // n x n vertices, 1 m wide and 0.2 kg, horizontal, without shear; pinned at two corners of one
 // edge. diagonals: one of each quad is constrained too.

@@ -29,9 +29,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Finding, grade, check, measured, advice)
 namespace {
 
 using inextensible::Positions;
-using inextensible::Problem;
 using inextensible::State;
-using inextensible::Stepper;
 using inextensible::StepResult;
 using inextensible::StrainControl;
 using Findings = std::vector<Finding>;
@@ -42,7 +40,6 @@ struct Examinee {
   const ConformanceOptions& options;
 };
 
-// The solver does not take the scene, and says why.
 struct NotTaken : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -120,8 +117,8 @@ bool keeps_a_limit(const inextensible::Backend& solver) {
   return solver.strain_control == StrainControl::strain_limit;
 }
 
-std::unique_ptr<Stepper> stepper_for(const Examinee& solver, const Case& c,
-                                     const inextensible::Settings& settings = {}) {
+std::unique_ptr<inextensible::Stepper> stepper_for(const Examinee& solver, const Case& c,
+                                                   const inextensible::Settings& settings = {}) {
   try {
     return inextensible::make_stepper(solver.backend.name, c.scene.problem,
                                       {c.strain_limit, solver.options.seed, settings});
@@ -139,7 +136,6 @@ bool same_bits(const State& a, const State& b) {
 
 // ---- Pins, limit and counters of ordinary scenes at ordinary steps ----
 
-// The worst of several runs, and where each promise was first broken.
 struct Runs {
   std::int64_t steps = 0;
   double worst = 0;  // strain over limit
@@ -200,9 +196,8 @@ Findings ordinary_runs(const Examinee& solver) {
 
 // ---- Linear and angular momentum of a free, weightless net ----
 
-// A hundredth of the strain that a step causes. An edge that is within its limit is not corrected:
-// with a limit near that strain, which edges are depends on the step, and the loss has no order in
-// it.
+// A hundredth of the strain that a step causes: with a limit near that strain, the step decides
+// which edges are corrected, and the loss has no order in it.
 constexpr double momentum_limit = 1e-5;
 // What edges may do within their limit has no order in the step: a hundredth of it is tolerated.
 constexpr double spin_tolerance = 0.01 * momentum_limit;
@@ -212,7 +207,7 @@ constexpr double vanishing = 0.5;
 
 // Relative change of angular momentum over the run; infinite if a step is refused.
 double loss_of_spin(const Examinee& solver, const Case& c, int refinement) {
-  const Problem& problem = *c.scene.problem;
+  const inextensible::Problem& problem = *c.scene.problem;
   const auto stepper = stepper_for(solver, c);
   State state = c.scene.start;
   const Eigen::Vector3d start = angular_momentum(problem, state);
@@ -258,8 +253,7 @@ Findings momentum(const Examinee& solver) {
              "the origin or along fixed axes they exert a torque")};
 }
 
-// ---- Steps that no method can take ----
-
+// Steps that no method can take.
 Findings refusal(const Examinee& solver) {
   const Case torn = case_of("a row between pins 20 % farther apart than it is long",
                             built_scene("taut_row", {{"stretch", 1.2}, {"n", 12}}), 0.01, 1);
@@ -292,8 +286,7 @@ Findings refusal(const Examinee& solver) {
                  wrong)};
 }
 
-// ---- A candidate that keeps the limit already ----
-
+// A candidate that keeps the limit already.
 Findings permissible_candidate(const Examinee& solver) {
   const char* check = "permissible candidate";
   // A setting of this name means the same in every row (setting_fields.h), plug-ins' too.
@@ -321,8 +314,7 @@ Findings permissible_candidate(const Examinee& solver) {
                  "a correction of what keeps the limit made it worse: test the candidate first")};
 }
 
-// ---- The same bits beside another instance ----
-
+// The same bits beside another instance.
 Findings determinism(const Examinee& solver) {
   const Case other = net(9, 4, 1, 2, 0.005, 1, 0.005);
   std::string difference;
@@ -358,8 +350,7 @@ Findings determinism(const Examinee& solver) {
       "was not initialized, no order of addresses; random numbers from BackendOptions::seed")};
 }
 
-// ---- Smaller steps, smaller error, towards the right motion ----
-
+// Smaller steps, smaller error, towards the right motion.
 Findings consistency(const Examinee& solver) {
   const char* check = "consistency";
   constexpr int links = 7;
@@ -371,8 +362,7 @@ Findings consistency(const Examinee& solver) {
   constexpr double not_vanishing = 0.68;
   const Case c =
       case_of("chain of 8", built_scene("chain", {{"n", links + 1}}), 0.32 / 80, 80, 1e-6);
-  // How far a step is iterated is a tolerance, not a part of the formula: it must not be what
-  // shows.
+  // How far a step is iterated is a tolerance, not a part of the formula: it must not show.
   inextensible::Settings settings;
   if (complete_settings(solver.backend, {}).contains("direction_tolerance"))
     settings["direction_tolerance"] = 0.01;
@@ -410,8 +400,7 @@ Findings consistency(const Examinee& solver) {
       "step that does not depend on h")};
 }
 
-// ---- Every hard case of the profile "quick" ----
-
+// Every hard case of the profile "quick".
 Findings all_hard_cases(const Examinee& solver) {
   const char* check = "hard cases";
   if (!solver.options.hard_cases) return {not_applicable(check, "left out")};

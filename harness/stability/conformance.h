@@ -1,5 +1,4 @@
-// `bench check`: what every solver must satisfy, whatever its method, checked from outside and
-// reported so that its author knows where to look.
+// `bench check`: what every solver must satisfy, checked from outside, with advice to its author.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +23,7 @@ struct ConformanceOptions {
   std::function<bool()> interrupted = nullptr;                  // asked several times a second
 };
 
-// The checks in the order in which they ran, each in a process of its own. `solver` must be
-// registered. Throws Interrupted.
+// Runs each check in a process of its own. `solver` must be registered. Throws Interrupted.
 std::vector<Finding> examine(const std::string& solver, const ConformanceOptions& options);
 
 }  // namespace harness

@@ -20,7 +20,6 @@ constexpr std::pair<const char*, Direction> directions[] = {
     {"local", Direction::local}, {"springs", Direction::springs},
 };
 
-// Whether one of the words of an expectation is about the method.
 bool is_about(const std::string& word, const Backend& backend) {
   for (const auto& [name, direction] : directions) {
     if (word == name) return backend.direction == direction;

@@ -41,7 +41,6 @@ struct HardCase {
   Expectation expectation(const std::string& solver) const;
 };
 
-// All hard cases of a profile (quick, default or paper).
 std::vector<HardCase> hard_cases(const std::string& profile);
 // The values that its series of cases run over, by the name of their list.
 std::map<std::string, std::vector<double>> hard_case_values(const std::string& profile);

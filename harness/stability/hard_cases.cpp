@@ -1,5 +1,4 @@
-// The hard cases: their scenes. What they are and how they are expected to end is in
-// configs/hard_cases.json.
+// The scenes of the hard cases; configs/hard_cases.json says how they are expected to end.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -20,9 +19,8 @@ using inextensible::Positions;
 using inextensible::State;
 using Direction = inextensible::Direction;
 
-// The closest point of the manifold is at most twice as far from the start as the candidate is, so
-// that a velocity filter may return up to four times the candidate's kinetic energy: an
-// energy_tolerance.
+// An energy_tolerance: the closest point of the manifold is at most twice as far from the start as
+// the candidate, so that a velocity filter may return four times its kinetic energy.
 constexpr double closest_point_energy = 3;
 
 // ---- Q1 to Q4 (Goldenthal et al. 2007, Figure 2): weightless, one step to given candidates ----
@@ -168,10 +166,7 @@ Trial jump(double /*value*/) {
   return trial;
 }
 
-// ---- Long chains and large cloths ----
-
-// Ten steps, with a budget of edge visits for methods that work in passes, and of iterations for
-// projections.
+// Ten steps, with a budget of edge visits for passes and of iterations for projections.
 Trial with_budget(Draft mesh) {
   Trial trial = trial_of(std::move(mesh), 1.0 / 400, 10);
   const double passes = std::max(100.0, 2e8 / trial.scene.problem->constraints());
@@ -188,10 +183,7 @@ Trial with_budget(Draft mesh) {
   return trial;
 }
 
-// ---- Cloth on a ball, with contact inside the solve ----
-
-// 11 x 11 vertices, so that edges are two fifths of the ball's radius; until the cloth lies on the
-// ball, and its sides hang.
+// 11 x 11 vertices (edges are 2/5 of the radius), until the cloth lies on the ball and hangs.
 Trial on_a_ball(const char* parameter, double value, double speed = 0, double depth = 0) {
   Scene scene = built_scene("drape", {{"n", 11}, {parameter, value}});
   if (speed > 0) scene.start.v.row(1).setConstant(-speed);
@@ -226,8 +218,6 @@ Trial with_noise_every_step(Trial trial) {
   };
   return trial;
 }
-
-// ---- All of them ----
 
 // How cases are built: one by its name, a series by its row, with a value of its list.
 const std::map<std::string, Trial (*)(double value)> builders{

@@ -12,8 +12,7 @@
 
 namespace harness {
 
-// Down the powers of two to the first step that is survived, then bisection (on a logarithmic
-// scale) against the one above.
+// Down the powers of two to the first step that is survived, then logarithmic bisection.
 LargestStep largest_step(const StabilityScene& scene, const std::string& solver, std::uint64_t seed,
                          const std::function<bool()>& interrupted) {
   constexpr double largest = 0.25;  // s
@@ -52,18 +51,13 @@ LargestStep largest_step(const StabilityScene& scene, const std::string& solver,
   return found;
 }
 
-// ---- Degrees of freedom ----
-
-namespace {
-
 // Rank of the Jacobian of | d |^2 / l over all coordinates.
-int rank_of_jacobian(const Draft& mesh, int constraints, int coordinates) {
+static int rank_of_jacobian(const Draft& mesh, int constraints, int coordinates) {
   std::vector<Eigen::Triplet<double>> entries;
   for (int k = 0; k < constraints; ++k) {
-    const auto e = static_cast<std::size_t>(k);
-    const auto [a, b] = mesh.parts.edges[e];
+    const auto [a, b] = mesh.parts.edges[k];
     const Eigen::Vector3d u =
-        2 * (mesh.scene.start.x.col(b) - mesh.scene.start.x.col(a)) / mesh.parts.rest_length[e];
+        2 * (mesh.scene.start.x.col(b) - mesh.scene.start.x.col(a)) / mesh.parts.rest_length[k];
     for (int axis = 0; axis < 3; ++axis) {
       entries.emplace_back(k, 3 * a + axis, -u[axis]);
       entries.emplace_back(k, 3 * b + axis, u[axis]);
@@ -73,8 +67,6 @@ int rank_of_jacobian(const Draft& mesh, int constraints, int coordinates) {
   jacobian.setFromTriplets(entries.begin(), entries.end());
   return static_cast<int>(Eigen::SPQR<Eigen::SparseMatrix<double>>(jacobian).rank());
 }
-
-}  // namespace
 
 std::vector<Freedom> degrees_of_freedom(int n) {
   std::vector<Freedom> list;
@@ -91,15 +83,11 @@ std::vector<Freedom> degrees_of_freedom(int n) {
   return list;
 }
 
-// ---- The same frames ----
-
 std::string SameFrameScene::name() const {
-  return scene + " " + std::to_string(side) + " x " + std::to_string(side) + ", strain limit " +
-         number_text(strain_limit);
+  return concat(scene, " ", side, " x ", side, ", strain limit ", strain_limit);
 }
 
-// Compares every step until shortly after first contact, which is early, then at the sample times
-// of references.
+// Compares every step until shortly after the early first contact, then at sample_interval.
 SameFrame same_frame(const SameFrameScene& wanted, std::uint64_t seed) {
   constexpr double densely_until = 0.05;  // s
   const Scene scene = built_scene(wanted.scene, {{"n", wanted.side}});
@@ -125,8 +113,8 @@ SameFrame same_frame(const SameFrameScene& wanted, std::uint64_t seed) {
     for (Run& run : runs) {
       const auto result = run.stepper->advance(run.state, wanted.step);
       if (result) continue;
-      found.stopped = std::string(run.solver) + " at step " + std::to_string(i) + ": " +
-                      to_string(result.status) + ", " + result.detail;
+      found.stopped =
+          concat(run.solver, " at step ", i, ": ", to_string(result.status), ", ", result.detail);
       return found;
     }
     const double time = static_cast<double>(i) * wanted.step;

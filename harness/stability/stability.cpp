@@ -116,8 +116,6 @@ StabilityOutcome run_stability(const StabilityPlan& plan, std::uint64_t seed,
   return outcome;
 }
 
-// ---- The document that a stability sweep leaves ----
-
 // JSON has null for an unknown number.
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ExpectationCounts, cells, strict, two_admitted, not_as_expected,
                                    new_differences)

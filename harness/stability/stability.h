@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -36,8 +35,6 @@ struct ExpectationCounts {
   int cells = 0, strict = 0, two_admitted = 0, not_as_expected = 0, new_differences = 0;
 };
 
-// ---- Beside the matrix ----
-
 // A scene for which the largest stable step is sought over one simulated second.
 struct StabilityScene {
   const char *name, *type;
@@ -54,17 +51,14 @@ struct LargestStep {
 LargestStep largest_step(const StabilityScene& scene, const std::string& solver, std::uint64_t seed,
                          const std::function<bool()>& interrupted);
 
-// Degrees of freedom that constraints leave to a cloth: 3 per free vertex less the rank of J
-// (SuiteSparseQR), at randomly displaced positions, so that the figure is that of a cloth in
-// general position (claim C14).
+// Degrees of freedom that constraints leave to a cloth (claim C14): 3 per free vertex less the rank
+// of J (SuiteSparseQR), at random displacements, hence in general position.
 struct Freedom {
-  // "quads" or "triangles": all of their edges are constrained; "midpoints": edges between the
-  // midpoints of triangles' edges.
+  // All edges of "quads" or "triangles", or edges between "midpoints" of triangles' sides.
   std::string mesh;
   int vertices;  // of quads and triangles
   int constraints, rank, degrees_of_freedom;
 };
-// The three meshes of n x n vertices.
 std::vector<Freedom> degrees_of_freedom(int n);
 
 // Figure 6 of the paper by direct comparison (claim C8): one cloth at one step by fast projection,
@@ -97,9 +91,6 @@ struct SameFrame {
 };
 SameFrame same_frame(const SameFrameScene& scene, std::uint64_t seed);
 
-// ---- The sweep ----
-
-// What will be run.
 struct StabilityPlan {
   std::vector<std::string> solvers;
   std::vector<HardCase> cases;
@@ -124,7 +115,6 @@ struct StabilityOutcome {
   ExpectationCounts counts() const;
 };
 
-// The key of a cell's result.
 inline std::string cell_key(const std::string& hard_case, const std::string& solver) {
   return hard_case + "/" + solver;
 }

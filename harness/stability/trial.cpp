@@ -103,9 +103,9 @@ bool TrialJudge::judge_strain(const Positions& filtered, const State& state) {
 
 bool TrialJudge::judge_limit(const StrainRange& worst, const char* when) {
   if (!limit_promised_ || worst.most <= trial_.strain_limit * (1 + 1e-9)) return true;
-  return broke(Promise::strain, std::string("success claimed, but ") + when + "edge " +
-                                    std::to_string(worst.edge) + " is strained by " +
-                                    told_apart(worst.most, trial_.strain_limit));
+  return broke(Promise::strain,
+               concat("success claimed, but ", when, "edge ", worst.edge, " is strained by ",
+                      told_apart(worst.most, trial_.strain_limit)));
 }
 
 // Looks at what is delivered: positions after everything that a step does.
@@ -118,13 +118,11 @@ bool TrialJudge::judge_contact(const State& state) {
   obstacle_->place(state.time);
   obstacle_->find(state.x, visible_depth * trial_.scene.size, inside_, work);
   if (inside_.empty()) return true;
-  return broke(Promise::contact, "success claimed, but vertex " +
-                                     std::to_string(inside_.front().vertex) +
-                                     " is inside the obstacle");
+  return broke(Promise::contact, concat("success claimed, but vertex ", inside_.front().vertex,
+                                        " is inside the obstacle"));
 }
 
-// The defect is |change of momentum - weight h| over what flows in the step; positions are known to
-// rounding only.
+// |change of momentum - weight h| over what flows in the step; positions are rounded.
 bool TrialJudge::judge_momentum(const State& state, double h) {
   if (!free_) return true;
   const Eigen::Vector3d expected =
@@ -184,8 +182,8 @@ Outcome attempt(const Trial& trial, const inextensible::Backend& backend, std::u
   if (smaller) result.smallest_step = driven.smallest;
   if (driven.end == DriveState::End::refused) {
     const inextensible::StepResult& step = driven.result;
-    result.detail = "step " + std::to_string(result.work.steps) + ": " + to_string(step.status) +
-                    ", " + step.detail;
+    result.detail =
+        concat("step ", result.work.steps, ": ", to_string(step.status), ", ", step.detail);
     if (step.worst_edge >= 0) result.detail += "; edge " + std::to_string(step.worst_edge);
     return Outcome::refused;
   }

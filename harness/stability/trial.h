@@ -40,8 +40,7 @@ struct Trial {
   double step = 0.01;  // s
   int steps = 1;
   double strain_limit = 0.01;
-  // N, of methods that are controlled by stiffness and promise no limit: one that would keep it.
-  // Unknown: their default.
+  // N, of methods without a limit of their own: one that would keep it. Unknown: their default.
   double stiffness = unknown;
   std::map<std::string, inextensible::Settings> settings = {};  // by solver
   // Changes the state before a step (moves a pin, adds noise). Energy is then not judged.
@@ -93,20 +92,19 @@ inline constexpr std::tuple trial_fields{
     field("at_fixed_step", &TrialResult::fixed, "", "at the trial's own step"),
     field("detail", &TrialResult::detail, "", "of a failure: step, reason, worst edge"),
     field("smallest_step", &TrialResult::smallest_step, "s", "accepted by the step controller",
-          {.nullable = true}),
+          may_be_absent),
     field("max_strain", &TrialResult::max_strain, "",
-          "after any accepted step, before the collision filter", {.nullable = true}),
+          "after any accepted step, before the collision filter", may_be_absent),
     field("strain_first_second", &TrialResult::strain_first_second, "",
-          "the same within the first simulated second, of trials of two or more",
-          {.nullable = true}),
+          "the same within the first simulated second, of trials of two or more", may_be_absent),
     field("strain_last_second", &TrialResult::strain_last_second, "",
-          "the same within the last one", {.nullable = true}),
+          "the same within the last one", may_be_absent),
     field("energy_gain", &TrialResult::energy_gain, "scale",
-          "largest E - E_0; negative: energy was lost throughout", {.nullable = true}),
+          "largest E - E_0; negative: energy was lost throughout", may_be_absent),
     field("momentum_defect", &TrialResult::momentum_defect, "",
-          "largest, relative, where nothing outside acts", {.nullable = true}),
+          "largest, relative, where nothing outside acts", may_be_absent),
     field("reciprocal_condition", &TrialResult::reciprocal_condition, "",
-          "worst of the linear systems", {.nullable = true}),
+          "worst of the linear systems", may_be_absent),
     field("seconds", &TrialResult::seconds, "s", "wall, both attempts")};
 
 nlohmann::json to_json(const TrialResult& result);

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <iterator>
 #include <map>
 
@@ -72,8 +71,7 @@ Table table_of(const std::vector<Plane>& planes) {
   return table;
 }
 
-// Splits the lead at 1 % strain and the headline's error between time stepper and method. The
-// figure has all limits.
+// Splits the lead at 1 % strain and the headline's error between stepper and method.
 void print_attribution(std::ostream& out, const Plane& plane) {
   constexpr double limit = 0.01;
   for (const Cell& cell : plane.cells) {
@@ -148,8 +146,6 @@ void print_planes(std::ostream& out, const std::vector<json>& sweeps) {
   }
 }
 
-// ---- Beside the planes ----
-
 // Further measurements of a scene, from the fastest run of each ranked contestant.
 struct SceneTable {
   const char *scene, *title, *unit;
@@ -215,8 +211,7 @@ void print_scene(std::ostream& out, const NamedResult& result, const SceneTable&
               table);
 }
 
-// One row per known answer, from the finest step that each solver finished. `bench show` lists
-// every solver.
+// One row per known answer, from the finest step that each solver finished.
 void print_answers(std::ostream& out, const NamedResult& result) {
   Table table{
       {"answer", "scene, strain limit", "exact", "finished", "nearest", "farthest", "order"}, {}};

@@ -12,8 +12,6 @@
 
 namespace harness {
 
-// ---- On a terminal ----
-
 // For each scene and size the answers of the strain-error grid (levels of error with the same
 // answer share a line), findings, and the growth of a step's time with resolution; then the noise.
 // all: also every contestant, fastest first, and how failed runs ended. file: its name in hints.
@@ -22,15 +20,11 @@ void print_sweep(std::ostream& out, const nlohmann::json& document, const std::s
 // How each solver's hard cases ended, the unexpected outcomes, and the largest stable steps.
 void print_outcomes(std::ostream& out, const nlohmann::json& document);
 
-// ---- In Markdown ----
-
-// results: sweeps and stability sweeps, which decide the claims. answers: results of
-// `bench answers`. Throws UsageError for incomplete documents.
+// docs/results.md. results: sweeps and stability sweeps, which decide the claims. answers: results
+// of `bench answers`. Throws UsageError for incomplete documents.
 void print_results_page(std::ostream& out, const std::vector<NamedResult>& results,
                         const std::vector<NamedResult>& answers = {});
 void print_budgets(std::ostream& out, const std::vector<analysis::BudgetTable>& tables);
-
-// ---- Shared by both ----
 
 // Hard cases: counts of outcomes by solver; and unexpected outcomes with their reasons if known.
 Table outcomes_in(const nlohmann::json& document);

@@ -130,8 +130,7 @@ void print_failures(std::ostream& out, const Runs& runs, bool all) {
   for (const auto& [name, count] : of_contestants) out << "  " << name << " x " << count << '\n';
 }
 
-// Plug-in solvers, their versions, and the share of time spent on copying states to and from an
-// engine.
+// Plug-in solvers, their versions, and the share of time that copying states takes.
 void print_plugins(std::ostream& out, const Runs& runs, const json& plugins) {
   if (!plugins.empty()) out << '\n';
   for (const auto& plugin : plugins) {

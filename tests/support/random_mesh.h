@@ -28,8 +28,7 @@ inline Eigen::MatrixXd random_matrix(Random& random, Eigen::Index rows, Eigen::I
   return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return uniform(random, -1, 1); });
 }
 
-// Runs test(random, seed) for `count` seeds, an eighth of them with sanitizers; a failure names its
-// seed.
+// Runs test(random, seed) for `count` seeds, an eighth with sanitizers; a failure names its seed.
 template <class Test>
 void for_seeds(std::uint64_t count, const Test& test) {
   for (std::uint64_t seed = 0; seed < trials(count); ++seed) {
@@ -67,8 +66,7 @@ inline ProblemParts parts_at_rest(const Positions& x, std::vector<Edge> edges,
   return parts;
 }
 
-// A crumpled quad grid of rows x columns vertices with unequal edge lengths and masses (a decade
-// apart). pinned: how many vertices.
+// A crumpled quad grid with unequal edge lengths and masses (a decade apart); `pinned` pins.
 inline RandomMesh random_mesh(Random& random, int rows, int columns, int pinned) {
   const int n = rows * columns;
   Positions x(3, n);
@@ -118,9 +116,8 @@ inline RandomMesh random_graph(Random& random, int n, int extra, int pinned, dou
   return {std::make_shared<const Problem>(parts_at_rest(x, edges, mass, pins)), x};
 }
 
-// Some hairs in one problem, their edges in random directions: pinned at one end, somewhere
-// between, or nowhere. At rest in random shape, masses log-uniform in [lightest, 1]. `twice`: some
-// edges are there a second time.
+// Some hairs in one problem, their edges in random directions: pinned at one end, between, or
+// nowhere. At rest in random shape, masses log-uniform in [lightest, 1]. `twice`: some edges are.
 inline RandomMesh random_chains(Random& random, int chains, double lightest = 1e-3,
                                 bool twice = false) {
   std::vector<double> mass;

@@ -96,8 +96,7 @@ TEST(Readings, OfExactMotionAreTheExactValues) {
   }
 }
 
-// A net that is put on a ball edge by edge: the fourth corner of a cell is where three spheres
-// meet. Its central yarns are great circles.
+// A net put on a ball edge by edge, each corner where three spheres meet, along two great circles.
 Positions net_on_ball(int n, double link, double radius) {
   Positions x(3, n * n);
   const int c = n / 2;
@@ -112,10 +111,9 @@ Positions net_on_ball(int n, double link, double radius) {
     for (const int right : {-1, 1}) {
       for (int i = c + down; i >= 0 && i < n; i += down) {
         for (int j = c + right; j >= 0 && j < n; j += right) {
-          // On the ball and as far from a as from b: in the plane through the centre whose normal
-          // is a - b. There the two points `link` from both are each other's mirror images in the
-          // line from the centre through the middle of a and b, and one of them is the corner
-          // across.
+          // On the ball and as far from a as from b: in the plane through the centre across a - b.
+          // There the two points `link` from both are mirror images in the line from the centre
+          // through the middle of a and b, and one is the corner across.
           const Eigen::Vector3d a = at(i - down, j), b = at(i, j - right);
           const Eigen::Vector3d across = at(i - down, j - right), line = (a + b).normalized();
           at(i, j) = 2 * line * line.dot(across) - across;

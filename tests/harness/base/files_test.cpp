@@ -1,7 +1,6 @@
 // Where output goes, and what stays unchanged: links, devices, pipes, the user's own files.
 #include "harness/base/files.h"
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>

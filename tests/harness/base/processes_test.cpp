@@ -20,9 +20,8 @@ namespace {
 
 using End = ChildOutcome::End;
 using nlohmann::json;
-using std::chrono::milliseconds;
 
-void sleep_for(int ms) { std::this_thread::sleep_for(milliseconds(ms)); }
+void sleep_for(int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); }
 
 TEST(ChildProcess, AnAnswerThatCannotBeReadIsHowItEnded) {
   for (const json& answer : {json({{"seconds", nullptr}}), json("a text"), json::object()}) {
@@ -61,8 +60,7 @@ TEST(ChildProcess, ADescendantLeftBehindIsKilledAndDelaysNobody) {
       << "its parent waited for the process that it left behind";
 }
 
-// The parent is stopped for longer than the time-out and its grace period (0.8 s), but runs for
-// much less, which leaves room for a busy machine.
+// The parent is stopped for longer than the time-out and its grace (0.8 s), but runs for much less.
 TEST(ChildProcess, TimeInWhichTheParentWasStoppedIsNotTheChilds) {
   std::array<int, 2> begun{}, finish{};
   ASSERT_EQ(pipe(begun.data()) + pipe(finish.data()), 0);
@@ -92,8 +90,7 @@ class Lock : public testing::Test {
   void SetUp() override { setenv("TMPDIR", ::testing::TempDir().c_str(), 1); }
 };
 
-// In a child, which may have been started under the lock: 0 if it gets the lock at once, 1 if it is
-// refused and the holder named.
+// In a child, perhaps started under the lock: 0 if it gets it, 1 if the holder is named.
 int try_in_child(bool started_under_it = false) {
   const pid_t child = fork();
   if (child == 0) {  // as after exec: the variable is inherited, the lock is not

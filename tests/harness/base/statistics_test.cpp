@@ -1,5 +1,4 @@
-// Ratios of times: the interval has the coverage that it claims, and says nothing where nothing
-// can be known.
+// Ratios of times: the interval has the coverage that it claims, and claims no more.
 #include "harness/base/statistics.h"
 
 #include <gtest/gtest.h>
@@ -103,9 +102,8 @@ TEST(Ratio, TheWiderOfSamplesAndPairCounts) {
   }
 }
 
-// Each place of a sweep has a speed of its own for each of the two names, which no repetition
-// shows: samples alone find differences in nine of ten pairs, the pair's own noise in one of
-// twenty.
+// Each place of a sweep has a speed of its own for each name, which no repetition shows: samples
+// alone find differences in nine of ten pairs, the pair's own noise in one of twenty.
 TEST(Ratio, AProgramAgainstItselfShowsNoDifference) {
   std::mt19937 random = seeded();
   std::normal_distribution<double> place(0, 0.05), repetition(0, 0.01);
@@ -122,6 +120,24 @@ TEST(Ratio, AProgramAgainstItselfShowsNoDifference) {
       coverage(5000, 1, [&] { return ratio_of_times(sample(), sample(), noise); });
   EXPECT_LT(alone, 0.6);
   EXPECT_NEAR(paired, 0.95, 0.02);
+}
+
+// Some 95 % of 95 % intervals hold the truth. Fewer than 360 of 400 do with a chance below 1e-4.
+TEST(Slope, IntervalsHoldTheTruthAsOftenAsTheySay) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> noise(0, 0.1);
+  int inside = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    std::vector<double> sizes, seconds;
+    for (const double n : {101, 201, 317, 501, 1001}) {
+      sizes.push_back(n);
+      seconds.push_back(std::exp(noise(random)) * 1e-7 * std::pow(n, 1.1));
+    }
+    const Slope slope = log_log_slope(sizes, seconds);
+    inside += slope.low() <= 1.1 && 1.1 <= slope.high();
+  }
+  EXPECT_GE(inside, 360);
+  EXPECT_LT(inside, 400);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 // verdicts out. Those on which method is fast: contests_test.cpp.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "support/invented_points.h"
@@ -27,7 +26,7 @@ TEST(Claims, C7FitsTheOrdersOfResidualsThatTookTwoIterations) {
         const double off = std::exp(corrupt * (k++ / 2 % 2 ? 1 : -1));
         json series = json::array();
         for (int i = 0; i < 12; ++i) series.push_back({0.1 * i, off * first, off * last});
-        p["error"] = {{"residuals", series}};
+        p["error"]["residuals"] = series;
         points.push_back(p);
       }
     }

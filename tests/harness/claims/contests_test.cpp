@@ -153,16 +153,12 @@ TEST(Claims, RivalsHaveTheFasterOfTheirTunedAndUntunedSettings) {
   const auto with = [](double untuned) {
     std::vector<json> points;
     for (const int n : {100, 400}) {
-      points.push_back(point("drape", "resolution", "fast_projection", 0.01, n, 0.01, 1));
-      points.push_back(point("drape", "resolution", "gauss_seidel", 0.01, n, 0.01, 2));
-      points.push_back(point("drape", "resolution", "gauss_seidel", 0.01, n, 0.01, untuned));
-      points.back()["contestant"] = "gauss_seidel_untuned";
+      for (const auto& [contestant, seconds] :
+           {std::pair("fast_projection", 1.0), {"icd", 2.0}, {"icd_untuned", untuned}})
+        points.push_back(point("drape", "resolution", contestant, 0.01, n, 0.01, seconds));
     }
     json result = document(points, 0.1);
-    result["legend"]["solvers"] = {{{"name", "gauss_seidel_untuned"},
-                                    {"solver", "gauss_seidel"},
-                                    {"family", "gauss_seidel"},
-                                    {"unranked", true}}};
+    result["legend"] = invented::document({})["legend"];
     return verdict_in("C6", result);
   };
   EXPECT_EQ(with(3).verdict, "reproduced");

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A sweep against everything that ends sweeps: kill -9, Ctrl-C, a full disk, a folder that is gone, a second run on the same
-# output, a journal of something else. Points that crash are in execute_test.cpp.
+# A sweep against what ends sweeps: kill -9, Ctrl-C, a folder that is gone, a second run on the same output, a journal of something
+# else. Points that crash are in execute_test.cpp, full disks in faults_test.sh.
 . "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/functions.sh"
 
 # The set of runs does not depend on times.
@@ -106,16 +106,5 @@ hold gone/result.json 5
 rm -rf gone
 let_go CONT
 [[ $? == 1 ]] && grep -q "removed meanwhile" err.txt || fail "a folder that is gone: $(tail -1 err.txt)"
-
-# ---- The disk fills up ---- (sanitizers must be loaded first)
-if ((!SANITIZED)); then
-  echo '{"old": true}' >full.json
-  LD_PRELOAD=$FILE_FAULTS FAULT=full FAULT_AT=40 exits 1 "No space left on device" "${sweep[@]}" --force --out full.json
-  [[ $(cat full.json) == '{"old": true}' ]] || fail "a full disk cost the old result"
-  [[ $(wc -l <full.json.journal) -gt 5 ]] || fail "a full disk cost the journal"
-  rm full.json
-  bench "${sweep[@]}" --resume --out full.json >/dev/null 2>&1 || fail "resumed after a full disk: exit $?"
-  same whole.json full.json || fail "resumed after a full disk is not undisturbed"
-fi
 
 finish

@@ -9,23 +9,16 @@ bench results "$result" >page.md || fail "results"
 bench report "$result" --out report.html >/dev/null || fail "report"
 bench plot "$result" --out figures >/dev/null || fail "plot"
 
-/usr/bin/python3 - <<'PYTHON' || fail "the printers differ"
-import html, json, re
+holds '
+import html, re
 from pathlib import Path
-finding, = json.load(open("analysis.json"))["findings"]
-sentence = finding["sentences"][0]
+sentence = read("analysis.json")["findings"][0]["sentences"][0]
 assert "is the fastest" in sentence, sentence
-
-def flat(text):
-    return " ".join(text.split())
-
 # The words of a picture stand in its comments, a line each.
-drawn = {path.name: flat(" ".join(re.findall(r"<!-- (.*?) -->", path.read_text()))) for path in Path("figures").glob("*.svg")}
-told = {"terminal": flat(Path("terminal.txt").read_text()), "page": flat(Path("page.md").read_text()),
-        "report": flat(html.unescape(Path("report.html").read_text())), **drawn}
-assert any("figure4a" in name for name in drawn) and any("plane" in name for name in drawn), sorted(drawn)
-silent = [name for name, text in told.items() if sentence not in text]
-assert not silent, f"{silent} do not say: {sentence}"
-PYTHON
+told = {str(path): " ".join(re.findall(r"<!-- (.*?) -->", path.read_text())) for path in Path("figures").glob("*.svg")}
+assert any("figure4a" in name for name in told) and any("plane" in name for name in told), sorted(told)
+told.update((name, html.unescape(Path(name).read_text())) for name in ("terminal.txt", "page.md", "report.html"))
+silent = [name for name, text in told.items() if sentence not in " ".join(text.split())]
+assert not silent, f"{silent} do not say: {sentence}"'
 
 finish

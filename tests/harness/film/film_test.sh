@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# bench film: the same run in three formats, read back by Python, which knows nothing of the program.
+# bench film: the same run in two formats, read back by Python, which knows nothing of the program.
 here=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
 . "$here/../cli/functions.sh"
 
 # A body that moves, one that stays, and none.
 for scene in 'garment --set n=12 --set period=0.3' 'drape --set n=7' 'chain --set n=9'; do
   name=${scene%% *}
-  for format in obj pvd pc2; do
+  for format in obj pc2; do
     mkdir -p "$name"
     # shellcheck disable=SC2086
     "$BENCH_BINARY" film --scene $scene --set duration=0.1 --solver fast_projection --limit 0.02 --step 0.005 \

@@ -10,10 +10,7 @@
 namespace harness {
 namespace {
 
-using inextensible::Backend;
-using inextensible::Positions;
 using inextensible::State;
-using inextensible::StepResult;
 using End = DriveState::End;
 
 constexpr double whole_step = 0.01;
@@ -24,7 +21,8 @@ class Picky : public inextensible::Stepper {
       : Stepper(scene.problem), longest_(longest), until_(until) {}
 
  protected:
-  StepResult solve(const State& state, double step, Positions& x) override {
+  inextensible::StepResult solve(const State& state, double step,
+                                 inextensible::Positions& x) override {
     if (step > longest_ || state.time > until_) return {inextensible::Status::not_converged};
     x = state.x;
     return {};
@@ -107,7 +105,7 @@ TEST(Drive, StopsWhereItIsToldTo) {
 // The chain begins to fall freely: half a step back it rises at g h / 2.
 TEST(Drive, StartsHalfAStepBackWhereVelocitiesAndSceneAskForIt) {
   Scene chain = built_scene("chain", {{"n", 3}});
-  Backend backend = *inextensible::find_backend("null");
+  inextensible::Backend backend = *inextensible::find_backend("null");
   backend.velocities = inextensible::Velocities::half_step;
   EXPECT_NEAR(start_of(chain, backend, whole_step).v(1, 2), 0.5 * 9.81 * whole_step, 1e-12);
   EXPECT_EQ(start_of(chain, backend, whole_step).x, chain.start.x);

@@ -1,5 +1,4 @@
-// References: the pendulum in angles against closed forms and against the dense equations of
-// motion, and what is stored.
+// The pendulum in angles against closed forms and dense equations of motion; what is stored.
 #include <gsl/gsl_sf_ellint.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,4 @@
-// Choosing from runs with given times, errors and frames; and spending the time, with a clock that
-// only invented runs advance.
+// Choosing from runs with given times and errors, with a clock that only invented runs advance.
 #include "harness/run/choose.h"
 
 #include <gtest/gtest.h>
@@ -73,8 +72,7 @@ TEST(Choose, LaddersFollowWhatScreeningSaw) {
   EXPECT_EQ(ladder_order(screened), (std::vector<std::size_t>{4, 2, 1, 3, 0, 5}));
 }
 
-// Six contestants on a chain. A run takes the seconds of the table at 1/60 s, and twice as much at
-// half the step. The error is 1 % everywhere.
+// Six contestants on a chain: seconds at 1/60 s, twice as many at half the step. The error is 1 %.
 class InventedMachine {
  public:
   std::map<std::string, double> seconds{

@@ -1,5 +1,4 @@
-// Small runs of real solvers, and a machine whose runs are formulas: plans are tested with it,
-// without a solver and without a clock.
+// Small runs of real solvers, and a machine whose runs are formulas, without a clock.
 #pragma once
 
 #include <cmath>
@@ -68,7 +67,6 @@ struct FakeMachine {
   }
 };
 
-// Whether the step is 1/n s.
 inline bool has_step(const PointSpec& spec, double n) { return std::abs(spec.step * n - 1) < 1e-9; }
 
 // Lowest, 0.1 s, at a step of 1/n s.

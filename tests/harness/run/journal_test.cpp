@@ -131,8 +131,6 @@ TEST_F(JournalTest, RemembersAllButFailuresAndAsMuchOfAResultFile) {
   EXPECT_EQ(runs, 0);
 }
 
-// ---- Pieces ----
-
 TEST(Pieces, JoinedAreTheWhole) {
   const Suite suite = suite_of("resolution");
   const auto searches = plan(suite, {});

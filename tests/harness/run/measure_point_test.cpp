@@ -1,5 +1,4 @@
-// Real runs: samples of short ones, frames, and contact over a whole run; and, with artificial
-// noise, which samples are taken again.
+// Real runs: samples, frames, and contact; and, with artificial noise, what is taken again.
 #include "harness/run/measure_point.h"
 
 #include <gtest/gtest.h>
@@ -16,8 +15,6 @@
 
 namespace harness {
 namespace {
-
-// ---- Runs ----
 
 TEST(Batches, ASampleOfAShortRunTakesAtLeastTwentyMilliseconds) {
   PointResult point = run_point(spec_at("chain", {{"n", 10}}, "gauss_seidel", 0.001), {});
@@ -104,20 +101,24 @@ TEST(FrameTimes, LeaveOutPartsOfAFrameAndFramesShorterThanAStep) {
   EXPECT_TRUE(frames_of(0.01, 1, 1).empty());
 }
 
+// An untimed run of 15 x 15 vertices, with errors.
+PointResult compared(const char* scene, const char* solver, double step, double limit) {
+  PointSpec spec = spec_at(scene, {{"n", 15}}, solver, step);
+  spec.strain_limit = limit;
+  const std::vector folders{source_path("results/references")};
+  return run_point(spec,
+                   {.references = std::make_shared<ReferenceFolder>(folders), .timed = false});
+}
+
 class DrapeErrors : public ::testing::TestWithParam<const char*> {};
 
 // A nearly inextensible cloth falls onto a sphere with friction: with each halving of the step the
 // error falls to the reference's uncertainty, and dissipated energy never comes back.
 TEST_P(DrapeErrors, FallWithTheStepToTheReferencesGap) {
   if (inextensible::testing::sanitized) GTEST_SKIP() << "too slow with sanitizers";
-  RunLimits limits{.timed = false};
-  limits.references =
-      std::make_shared<ReferenceFolder>(std::vector{source_path("results/references")});
   double before = 1;
   for (const double h : {0.02, 0.01, 0.005, 0.0025, 0.00125}) {
-    PointSpec spec = spec_at("drape", {{"n", 15}}, GetParam(), h);
-    spec.strain_limit = 0.001;
-    const PointResult point = run_point(spec, limits);
+    const PointResult point = compared("drape", GetParam(), h, 0.001);
     ASSERT_EQ(point.status, PointStatus::ok) << "h = " << h << ": " << point.detail;
     EXPECT_LE(point.measures.energy_rise, 0.002) << "h = " << h;
     const ErrorAtLevel at = error_at(point.measures, headline_error);
@@ -137,13 +138,8 @@ INSTANTIATE_TEST_SUITE_P(ContactMethods, DrapeErrors,
 // Forces act in full on vertices that touch, in every stepper: halved, they led RATTLE 4 % astray.
 TEST(SettlingDrape, IsRightInEveryStepper) {
   if (inextensible::testing::sanitized) GTEST_SKIP() << "too slow with sanitizers";
-  RunLimits limits{.timed = false};
-  limits.references =
-      std::make_shared<ReferenceFolder>(std::vector{source_path("results/references")});
   for (const char* contestant : {"fast_projection@midpoint", "shake", "rattle"}) {
-    PointSpec spec = spec_at("settling_drape", {{"n", 15}}, contestant, 1.0 / 1600);
-    spec.strain_limit = 1e-5;
-    const PointResult point = run_point(spec, limits);
+    const PointResult point = compared("settling_drape", contestant, 1.0 / 1600, 1e-5);
     EXPECT_LT(error_at(point.measures, headline_error).distance, 0.005) << contestant;
     EXPECT_EQ(point.status, PointStatus::ok) << contestant << ": " << point.detail;
   }
@@ -151,27 +147,22 @@ TEST(SettlingDrape, IsRightInEveryStepper) {
 
 // Edges that shake between limits of 10 % return energy step by step.
 TEST(EnergyRise, FailsAShakingCloth) {
-  PointSpec spec = spec_at("drape", {{"n", 15}}, "fast_projection", 1.0 / 1600);
-  spec.strain_limit = 0.1;
-  const PointResult point = run_point(spec, {.timed = false});
+  const PointResult point = compared("drape", "fast_projection", 1.0 / 1600, 0.1);
   EXPECT_EQ(point.status, PointStatus::energy_gained) << point.detail;
   EXPECT_GT(point.measures.energy_rise, 0.05);
 }
 
-// ---- Noise ----
-
 // Samples are 1, 2, 3, ... and looks take what a list says, in ms; the first ten are quiet ones.
 TEST(QuietSamples, ADisturbedLookOnEitherSideTakesItAgainUpToThreeTimes) {
-  struct Row {
+  const struct {
     const char* what;
     std::vector<double> looks;
     int dropped, sample, retaken;
-  };
-  for (const auto& [what, looks, dropped, sample, retaken] :
-       {Row{"before", {1.06, 1.0, 1.0}, 0, 2, 1},
-        Row{"after, which is before the next one, too", {1.0, 1.06, 1.0, 1.0}, 0, 3, 2},
-        Row{"the calmest stands, between 1.2 and 1.3", {2.0, 1.5, 1.2, 1.3, 3.0}, 0, 3, 3},
-        Row{"one was dropped before", {2.0, 1.5, 1.2, 1.3}, 1, 3, 3}}) {
+  } rows[] = {{"before", {1.06, 1.0, 1.0}, 0, 2, 1},
+              {"after, which is before the next one, too", {1.0, 1.06, 1.0, 1.0}, 0, 3, 2},
+              {"the calmest stands, between 1.2 and 1.3", {2.0, 1.5, 1.2, 1.3, 3.0}, 0, 3, 3},
+              {"one was dropped before", {2.0, 1.5, 1.2, 1.3}, 1, 3, 3}};
+  for (const auto& [what, looks, dropped, sample, retaken] : rows) {
     int samples = 0, warm = 0;
     std::size_t seen = 0;
     QuietProbe probe([&, &list = looks] { return ++warm <= 10 ? 1e-3 : 1e-3 * list.at(seen++); });

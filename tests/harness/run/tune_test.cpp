@@ -102,8 +102,7 @@ TEST(TuneSearch, ValuesStayInTheirRangeAndComeBackFromTheirPosition) {
   EXPECT_NEAR(value_at(numbers()[1], 0.5), 0.01, 1e-12) << "logarithmic";
 }
 
-// Colored Gauss-Seidel under a fake clock: its time is lowest at a relaxation of 1.7 and a step of
-// 1/200 s.
+// Colored Gauss-Seidel's fake time is lowest at a relaxation of 1.7 and a step of 1/200 s.
 double relaxation_of(const inextensible::Settings& settings) {
   const auto found = settings.find("relaxation");
   return found == settings.end() ? 1.0 : std::get<double>(found->second);
@@ -144,8 +143,7 @@ TEST(Tune, FindsASettingAndSaysWhatItGains) {
   }
 }
 
-// Tight limits are missed above some relaxation: each place has its own best, and where the default
-// misses the limit the search begins with a drawn set.
+// Tight limits are missed above some relaxation, even by the default: each place has its own best.
 TEST(Tune, EachPlaceIsTunedForItself) {
   for (const double fails_above : {1.4, 0.9}) {
     FakeMachine machine{bowl_of, [fails_above](const PointSpec& spec) {
@@ -201,16 +199,16 @@ TEST(Tune, APlaceWithLongRunsGetsASmallerSize) {
 TEST(Tune, AnEntryIsRefusedOnceItsRuleHasChanged) {
   FakeMachine machine{bowl_of};
   const TunedEntry entry = tuned(machine, {.budget = 10});
-  struct Row {
+  const struct {
     const char* place;
     nlohmann::json was;
     std::string change;
-  };
-  for (const Row& row :
-       {Row{"/scene", "chain", ""},
-        Row{"/scene_parameters/gravity", 1.62, "scene_parameters/gravity is 9.81, was 1.62"},
-        Row{"/settings/relaxation/range/1", 1.5, "settings/relaxation/range/1 is 1.998, was 1.5"},
-        Row{"/sizes", {50, 100}, "sizes/1 is 200, was 100"}}) {
+  } rows[] = {
+      {"/scene", "chain", ""},
+      {"/scene_parameters/gravity", 1.62, "scene_parameters/gravity is 9.81, was 1.62"},
+      {"/settings/relaxation/range/1", 1.5, "settings/relaxation/range/1 is 1.998, was 1.5"},
+      {"/sizes", {50, 100}, "sizes/1 is 200, was 100"}};
+  for (const auto& row : rows) {
     TunedEntry other = entry;
     other.context = {{"date", ""}, {"cpu_model", ""}, {"commit", ""}};
     other.rule[nlohmann::json::json_pointer(row.place)] = row.was;

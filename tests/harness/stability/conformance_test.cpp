@@ -17,7 +17,6 @@
 namespace inextensible {
 namespace {
 
-using harness::examine;
 using harness::Finding;
 
 // What a fault gets to see; it corrupts x after a step that was accepted, or before it.
@@ -129,7 +128,7 @@ using Checks = std::set<std::string>;
 
 Checks failed_checks(const std::string& solver, bool hard_cases = false) {
   Checks failed;
-  for (const Finding& finding : examine(solver, {1, hard_cases})) {
+  for (const Finding& finding : harness::examine(solver, {1, hard_cases})) {
     if (finding.grade != Finding::Grade::fail) continue;
     failed.insert(finding.check);
     std::cout << solver << ": " << finding.check << ", " << finding.measured << '\n'

@@ -167,8 +167,7 @@ TEST(Stability, StrainIsKeptOfTheFirstAndTheLastSecond) {
   }
 }
 
-// Frames of the same solver from a start that was hardly moved are that close before contact, and
-// ICD is within the slack of the limit.
+// Frames of hardly moved starts are that close before contact, and ICD is within the limit's slack.
 TEST(SameFrame, RunsAgreeBeforeContactAndAreComparedAfterIt) {
   const auto found = harness::same_frame({"drape", 9, 0.01}, 1);
   EXPECT_EQ(found.stopped, "");
