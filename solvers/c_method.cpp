@@ -121,7 +121,9 @@ class Object {
     if (result < 0 || result >= static_cast<int>(std::size(statuses)))
       return {Status::not_converged, 0, -1, 0, "the plug-in returned an unknown result"};
     return {statuses[result], static_cast<int>(step.iterations), -1, 0,
-            step.reason ? step.reason : ""};
+            step.reason ? step.reason
+            : result    ? "the plug-in gave no reason"
+                        : ""};
   }
 
  private:

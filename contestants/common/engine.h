@@ -61,8 +61,10 @@ int take_step(void* object, InextensibleStep* step) {
     return INEXTENSIBLE_NOT_CONVERGED;
   }
   const Eigen::Index n = engine.vertices;
-  if (!std::isfinite(columns(step->x, n).sum() + columns(step->v, n).sum()))
+  if (!std::isfinite(columns(step->x, n).sum() + columns(step->v, n).sum())) {
+    step->reason = "a number overflowed";
     return INEXTENSIBLE_NOT_FINITE;
+  }
   engine.accept();
   return INEXTENSIBLE_OK;
 }

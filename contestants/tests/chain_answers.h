@@ -87,9 +87,11 @@ inline void expect_chains_only(const std::string& solver) {
       EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
     }
   };
-  expect_unsupported(spinning_net(3, 1), "0 vertices are pinned");
   const auto [problem, start] = chain(3);
   ProblemParts parts = inextensible::testing::parts_of(*problem);
+  parts.pinned.clear();
+  expect_unsupported(finished(parts, start.x, start.v), "0 vertices are pinned");
+  parts.pinned = {0};
   parts.edges.back() = {1, 3};
   expect_unsupported(finished(parts, start.x, start.v), "vertex 1 has more than two edges");
   parts.edges.pop_back();

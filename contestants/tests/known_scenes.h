@@ -75,21 +75,6 @@ inline Scene swirling_chain(int links) {
   return {hanging_chain(links).problem, {x, v}};
 }
 
-// n x n vertices of 1 kg and 1 m x 1 m in all, without weight, that spin about y by `omega`.
-inline Scene spinning_net(int n, double omega) {
-  const double length = 1.0 / (n - 1);
-  std::vector<inextensible::Edge> edges;
-  Positions x(3, n * n), v(3, n * n);
-  for (int i = 0; i < n * n; ++i) {
-    const int row = i / n, column = i % n;
-    x.col(i) << column * length - 0.5, 0, row * length - 0.5;
-    v.col(i) = omega * Eigen::Vector3d::UnitY().cross(Eigen::Vector3d(x.col(i)));
-    if (column + 1 < n) edges.push_back({i, i + 1});
-    if (row + 1 < n) edges.push_back({i, i + n});
-  }
-  return finished(parts_at_rest(x, edges, std::vector<double>(n * n, 1.0 / (n * n))), x, v);
-}
-
 // A stepper of the plug-in with this name.
 inline std::unique_ptr<inextensible::Stepper> make(const std::string& solver, const Scene& scene,
                                                    const Settings& settings = {}) {
@@ -150,44 +135,6 @@ inline void expect_refusal_without_trace(const std::string& solver, const Scene&
     ASSERT_TRUE(fresh->advance(expected, 1e-3));
   }
   EXPECT_TRUE(after.x == expected.x && after.v == expected.v);
-}
-
-// A step whose numbers overflow.
-inline void expect_overflow_refused(const std::string& solver) {
-  const Scene scene = chain(5);
-  State fast = scene.start;
-  fast.v.rightCols(2).setConstant(1e300);
-  expect_refusal_without_trace(solver, scene, fast, 1e10);
-}
-
-// For engines of first order: the error of a pendulum halves with the step.
-inline void expect_first_order(const std::string& solver) {
-  const double coarse = pendulum_error(solver, 1000), fine = pendulum_error(solver, 2000);
-  EXPECT_LT(fine, 0.01);
-  EXPECT_NEAR(std::log2(coarse / fine), 1, 0.1);
-}
-
-// Free flight keeps its momentum and never falls asleep.
-inline void expect_free_flight(const std::string& solver) {
-  Scene scene = spinning_net(4, 0);
-  scene.start.v.colwise() = Eigen::Vector3d(3, -2, 1);
-  constexpr double h = 1.0 / 128;  // that single precision holds
-  const State after = run(solver, scene, h, 1);
-  EXPECT_LT(distance(after.x, scene.start.x + h * scene.start.v), 1e-14);
-  EXPECT_LT(distance(after.v, scene.start.v), 1e-12);
-  EXPECT_LT(distance(run(solver, scene, h, 1000).v, scene.start.v), 1e-10);
-}
-
-// Two vertices on a spring swing with omega^2 = 2 k / m about their fixed middle.
-inline void expect_spring(const std::string& solver) {
-  Positions x = Positions::Zero(3, 2);
-  x.row(0) << -0.55, 0.55;
-  ProblemParts parts = parts_at_rest(x, {}, {1, 1});
-  parts.shear = inextensible::Springs{{{0, 1}}, {1}, {50}};
-  const Scene scene = finished(parts, x, Positions::Zero(3, 2));
-  const State after = run(solver, scene, std::numbers::pi / 10 / 3200, 3200);  // half a period
-  EXPECT_NEAR(after.x(0, 1), 0.45, 1e-4);
-  EXPECT_NEAR(after.x(0, 0), -0.45, 1e-4);
 }
 
 }  // namespace engines
