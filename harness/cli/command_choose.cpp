@@ -74,7 +74,12 @@ struct Choice {
         << (std::isfinite(wish.error) ? "motion error at most " + percent(wish.error)
                                       : std::string("any motion"))
         << ": " << tried.size() << " of " << trials.screened.size() << " solvers tried in "
-        << duration_text(seconds) << '\n';
+        << duration_text(seconds);
+    if (std::ranges::none_of(trials.points, &PointResult::ok)) {
+      out << ": " << nothing_found();
+      return;
+    }
+    out << '\n';
     if (found.best)
       print_found(out);
     else

@@ -138,7 +138,7 @@ void per_item(benchmark::State& state, int items, const char* what = "s_per_edge
   state.counters[what] = Counter(items, Counter::kIsIterationInvariantRate | Counter::kInvert);
 }
 
-// ---- Passes over all edges or vertices, and whole iterations of solvers ----
+// ---- Passes over all edges or vertices ----
 
 void edge_pass(benchmark::State& state, bool gradients, const std::string& scene, int n) {
   const Moment& m = moment(scene, n);
@@ -172,36 +172,6 @@ void vertex_pass(benchmark::State& state, bool collision, const std::string& sce
   }
   per_item(state, problem.vertices(), "s_per_vertex");
   if (collision) state.counters["contacts"] = average(static_cast<double>(work.contacts));
-}
-
-// One iteration of a solver within a step: the time of steps from one state, less that of `null`,
-// over their iterations. It includes what a solver does once per step, such as a last edge check.
-void iteration(benchmark::State& state, const std::string& name, const std::string& scene, int n) {
-  const Moment& m = moment(scene, n);
-  BackendOptions options{.strain_limit = 1e-4};  // so that there is something to do
-  for (const SettingInfo& setting : find_backend(name)->settings)
-    if (std::string_view(setting.name) == "min_iterations") options.settings[setting.name] = 1.0;
-  const auto stepper = make_stepper(name, m.scene.problem, options);
-  const auto null = make_stepper("null", m.scene.problem, {});
-  const int rounds = std::max(1, 20000 / n);  // so that clock reads do not count
-  State s;
-  const auto seconds = [&](Stepper& which) {
-    const double begin = thread_seconds();
-    for (int round = 0; round < rounds; ++round) {
-      s = m.state;
-      benchmark::DoNotOptimize(which.advance(s, m.h));
-    }
-    return thread_seconds() - begin;
-  };
-  s = m.state;
-  const StepResult first = stepper->advance(s, m.h);
-  if (!first || first.iterations == 0) return state.SkipWithError("refused, or nothing to do");
-  while (state.KeepRunning()) {
-    const double without = seconds(*null);
-    state.SetIterationTime(seconds(*stepper) - without);
-  }
-  per_item(state, m.problem().constraints() * first.iterations * rounds);
-  state.counters["iterations"] = first.iterations;
 }
 
 std::unique_ptr<VelocityFilter> filter(const Problem& problem, const std::string& method,
@@ -309,17 +279,11 @@ void register_steps(const std::string& scene, int n) {
   add("unconstrained_step" + at, vertex_pass, false, scene, n);
   add("edge_pass" + at, edge_pass, true, scene, n);
   add("strain_check" + at, edge_pass, false, scene, n);
-  if (scene == "drape") {
-    add("collision_pass" + at, vertex_pass, true, scene, n);
-    for (const std::string method :
-         {"gauss_seidel", "gauss_seidel_colored", "jacobi", "yarn_projection"})
-      add("strain_pass/" + method + at, strain_pass, method, n)->UseManualTime();
-    return;
-  }
-  std::vector<std::string> solvers{"fast_projection", "implicit_springs"};
-  if (n <= 80) solvers.insert(solvers.end(), {"shake", "rattle", "icd"});
-  for (const std::string& name : solvers)
-    add("iteration/" + name + at, iteration, name, scene, n)->UseManualTime();
+  if (scene != "drape") return;
+  add("collision_pass" + at, vertex_pass, true, scene, n);
+  for (const std::string method :
+       {"gauss_seidel", "gauss_seidel_colored", "jacobi", "yarn_projection"})
+    add("strain_pass/" + method + at, strain_pass, method, n)->UseManualTime();
 }
 
 void register_linear_systems(const std::string& scene, int n, const std::vector<std::string>& spd) {

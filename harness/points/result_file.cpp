@@ -135,7 +135,8 @@ void check_points(const json& document, const std::string& path) {
   for (const json& point : document.at("points")) {
     const std::string id = point.at("id").get<std::string>();
     std::string why = impossible(point);
-    if (!ids.insert(point.at("sweep").get<std::string>() + id).second) why = "is there twice";
+    if (!ids.insert(id + point.at("sweep").dump() + point.at("scene_parameters").dump()).second)
+      why = "is there twice";
     if (!why.empty())
       throw UsageError("'" + path + "' cannot be a result: point '" + shortened(id) + "' " + why);
   }

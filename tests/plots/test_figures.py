@@ -84,7 +84,7 @@ def test_cost_over_strain(pictures: dict) -> None:
 
 
 def test_the_fastest_run_of_any_motion_and_of_motion_that_is_right(pictures: dict) -> None:
-    assert list(pictures["two questions"]) == ["figure4a", "plane-chain", "lead-chain", "budget-chain"]
+    assert list(pictures["two questions"]) == ["figure4a", "plane-chain", "budget-chain"]
     chosen = [{line.get_color(): line.get_ydata()[-1] for line in curves(axes)} for axes in panels(pictures["two questions"]["figure4a"])]
     assert (chosen[0][GREEN], chosen[1][GREEN]) == (0.1, 0.4)
 

@@ -1,18 +1,42 @@
-// Corrupted suites and result files, by the thousand: what the fuzzer does, repeatably and in CI.
+// Corrupted suites and result files, by the thousand, repeatably.
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "harness/base/files.h"
+#include "harness/claims/claims.h"
 #include "harness/points/context.h"
-#include "harness/points/fuzz_documents.h"
+#include "harness/run/sweep.h"
+#include "harness/tables/tables.h"
 #include "support/effort.h"
+#include "support/refusal.h"
 
+namespace harness {
 namespace {
 
-using harness::testing::read_as_result;
-using harness::testing::read_as_suite;
 using nlohmann::json;
+
+// Whatever a user's file holds: a suite, a result, or UsageError with one line; nothing else gets
+// out.
+std::string read_as_suite(const std::string& text) {
+  return refusal_of([&text] {
+    const Suite suite = parse_suite(text, "fuzz");
+    (void)to_json(suite).dump();
+    std::size_t points = 0;  // planning is cheap, unless the suite asks for billions of points
+    for (const SweepSpec& s : suite.sweeps)
+      points += s.limits.size() * s.resolutions.size() * s.contestants.size();
+    if (points < 10000) (void)plan(suite, {});
+  });
+}
+
+std::string read_as_result(const std::string& text) {
+  return refusal_of([&text] {
+    const json result = parse_result(text, "fuzz");
+    (void)judge_claims({result});
+    std::ostringstream page;
+    print_results_page(page, {{"fuzz", result}});
+  });
+}
 
 // One to four corrupted places: bytes changed, cut out or doubled, or a value that trips readers.
 std::string corrupt_text(std::string text, std::mt19937_64& random) {
@@ -91,26 +115,25 @@ void corrupt_and_read(const std::string& text, std::string (*read)(const std::st
 
 TEST(Documents, CorruptedSuitesAreReadOrRefusedInALine) {
   for (auto name : {"quick.json", "default.json", "pairs.json", "paper.json", "large.json"}) {
-    const std::string text =
-        harness::read_file(std::string(SOURCE_DIR) + "/configs/" + name, "suite");
+    const std::string text = read_file(std::string(SOURCE_DIR) + "/configs/" + name, "suite");
     ASSERT_EQ(read_as_suite(text), "") << name;
     corrupt_and_read(text, read_as_suite, inextensible::testing::trials(200));
   }
 }
 
 TEST(Documents, CorruptedResultsAreReadOrRefusedInALine) {
-  std::vector<harness::PointResult> points;
-  const auto suite = harness::read_suite(std::string(SOURCE_DIR) + "/configs/pairs.json");
-  for (const harness::Search& search : harness::plan(suite, {})) {
-    points.emplace_back(search.base, harness::PointStatus::ok).samples = {0.5};
+  std::vector<PointResult> points;
+  const auto suite = read_suite(std::string(SOURCE_DIR) + "/configs/pairs.json");
+  for (const Search& search : plan(suite, {})) {
+    points.emplace_back(search.base, PointStatus::ok).samples = {0.5};
     points.back().best = true;
     if (points.size() == 2) break;
   }
-  const std::string text = harness::result_document(harness::machine_context(), harness::Suite{},
-                                                    {"bench"}, true, points)
-                               .dump(1);
+  const std::string text =
+      result_document(machine_context(), Suite{}, {"bench"}, true, points).dump(1);
   ASSERT_EQ(read_as_result(text), "");
   corrupt_and_read(text, read_as_result, inextensible::testing::trials(2000));
 }
 
 }  // namespace
+}  // namespace harness
