@@ -82,7 +82,10 @@ ensure_debian_packages() {
     printf 'sudo %s\n' "$by_hand" >&2
     return 2
   fi
-  say "installing them ..."
+  if [[ -z ${CI:-}${yes:-} ]]; then
+    say "installing them in five seconds; Ctrl-C stops, ./bench --yes does not wait ..."
+    sleep 5
+  fi
   export DEBIAN_FRONTEND=noninteractive
   local install=(apt-get install -y --no-install-recommends -o DPkg::Lock::Timeout=300 "${missing[@]}")
   # The package lists of a bare machine are empty or old: an attempt that failed is repeated after an update.

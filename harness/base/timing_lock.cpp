@@ -35,6 +35,9 @@ TimingLock::TimingLock(bool wait) {
     throw UsageError("cannot open '" + path + "', the timing lock: " + std::strerror(errno) +
                      "; --untimed goes without");
   while (!try_lock(file_.get())) {
+    if (errno != EACCES && errno != EAGAIN)
+      throw UsageError("'" + path + "' cannot be locked: " + std::strerror(errno) +
+                       "; --untimed goes without");
     const pid_t other = lock_holder(file_.get());
     if (is_for_us(other)) {
       file_ = OpenFile();

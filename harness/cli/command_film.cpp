@@ -73,9 +73,13 @@ struct Film : SceneOptions {
   void complete_film() {
     film.scene = name();
     film.parameters = complete_parameters();
-    const auto wanted = solver_pattern(solver);
-    for (const auto& backend : inextensible::backends()) {
-      if (wanted->matches(backend.name)) film.solvers.push_back({backend.name, backend.name});
+    (void)solver_pattern(solver);                           // refuses what is no solver
+    for (const std::string& part : alternatives(solver)) {  // in the order given
+      const Pattern wanted("--solver", part);
+      for (const auto& backend : inextensible::backends())
+        if (wanted.matches(backend.name) &&
+            find_contestant(film.solvers, backend.name) == film.solvers.end())
+          film.solvers.push_back({backend.name, backend.name});
     }
     tune(film.solvers, read_tuned_up_to_date("tuned.json"), find_scene(film.scene)->kind());
   }

@@ -265,6 +265,6 @@ std::string Command::one_typed() const {
 
 int main(int argc, char** argv) {
   harness::open_standard_streams();
-  harness::use_one_thread();
+  harness::use_one_thread(argv);
   return harness::guarded([&] { return harness::run(argc, argv); });
 }

@@ -189,7 +189,7 @@ class ReferenceMaker {
     if (found.size() < r_.times.size())
       throw UsageError(concat("no reference: ", route.solver, " with h = ", h,
                               " s fails before t = ", r_.times[found.size()],
-                              " s (a smaller --finest may help)"));
+                              " s (bench reference with a smaller --finest may help)"));
     return found;
   }
 

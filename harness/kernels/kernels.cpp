@@ -312,7 +312,7 @@ void register_all() {
 }  // namespace harness::kernels
 
 int main(int argc, char** argv) try {
-  harness::use_one_thread();
+  harness::use_one_thread(argv);
   // An option of all programs that time runs, which Google Benchmark does not know.
   char** const end = std::remove_if(
       argv + 1, argv + argc, [](const char* word) { return std::string(word) == "--no-wait"; });

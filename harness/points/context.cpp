@@ -89,7 +89,12 @@ json libraries_json() {
 
 const char* version() { return INEXTENSIBLE_VERSION; }
 
-void use_one_thread() {
+void use_one_thread(char** argv) {
+  const char* threads = std::getenv("OPENBLAS_NUM_THREADS");
+  if (!threads || std::string(threads) != "1") {
+    setenv("OPENBLAS_NUM_THREADS", "1", 1);
+    execv("/proc/self/exe", argv);  // goes on where that fails
+  }
   openblas_set_num_threads(1);
   omp_set_max_active_levels(0);  // CHOLMOD's num_threads clause outvotes OMP_NUM_THREADS
 }

@@ -16,8 +16,9 @@ nlohmann::json machine_context();
 std::string counters_fingerprint();
 
 // One thread, whatever the environment says, in OpenBLAS and in CHOLMOD's own OpenMP loops (which
-// ask for four): a comparison of methods, not of thread pools.
-void use_one_thread();
+// ask for four): a comparison of methods, not of thread pools. OpenBLAS starts its threads before
+// main, and waits for them forever where they find no memory: the program starts itself again.
+void use_one_thread(char** argv);
 
 const char* version();
 
