@@ -88,6 +88,7 @@ struct SweepCommand : SweepOptions, OutputOptions {
   static int print_plan(const Suite& suite, const std::vector<Search>& searches) {
     std::size_t most = 0;
     for (const Search& search : searches) most += search.ladder.size();
+    for (const SweepSpec& sweep : suite.sweeps) std::cout << find_scene(sweep.scene)->description;
     const Estimate guess = estimate(suite, searches);
     std::cout << searches.size() << " searches for a best step, at most " << most
               << " points (usually half of them), about " << duration_text(guess.seconds)

@@ -91,6 +91,7 @@ Condition read_pins(const std::string& text, const MeshFile& file) {
 
 // The files, read once for the scenes of all parameters.
 struct MeshModel {
+  std::string description;
   std::string name, identity;  // name: with the hash of all that the scene is made of
   Condition pinned, loaded;    // empty: nothing is
   ClothMesh cloth, start;      // unstretched, and where it begins
@@ -162,6 +163,12 @@ inextensible::TriangleMesh body_of(const MeshFile& file) {
   return body;
 }
 
+Eigen::AlignedBox3d box_of(const std::vector<Eigen::Vector3d>& points) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& point : points) box.extend(point);
+  return box;
+}
+
 // Throws UsageError for cloth that falls apart or cannot move.
 void check_cloth(const std::string& path, MeshFile file, const ClothMesh& cloth, bool has_body,
                  bool welded) {
@@ -180,10 +187,7 @@ void check_cloth(const std::string& path, MeshFile file, const ClothMesh& cloth,
     if (cloth.held[v]) held.insert(piece[v]);
   const int loose = pieces - static_cast<int>(held.size());
   if (pieces == 1 || (has_body && welded) || loose == 0) return;
-  const Eigen::AlignedBox3d box = std::accumulate(
-      cloth.vertices.begin(), cloth.vertices.end(), Eigen::AlignedBox3d{},
-      [](Eigen::AlignedBox3d all, const Eigen::Vector3d& v) { return all.extend(v); });
-  weld(file, 1e-6 * box.diagonal().norm());
+  weld(file, 1e-6 * box_of(cloth.vertices).diagonal().norm());
   const std::vector<int> joined = pieces_of(cloth_of(file));
   const bool doubled = *std::ranges::max_element(joined) + 1 < pieces;
   if (has_body && !doubled) return;
@@ -255,6 +259,35 @@ std::optional<double> number_of(const std::map<std::string, std::string>& parts,
   return value;
 }
 
+// What was read, and what becomes of it, for people.
+std::string description_of(const MeshModel& model, const MeshFile& file, const ClothMesh& cloth) {
+  const std::vector<int> piece = pieces_of(cloth);
+  const Eigen::AlignedBox3d box = box_of(model.start.vertices);
+  const Eigen::Vector3d sizes = box.sizes();
+  const double largest = sizes.maxCoeff();
+  std::string text = concat("'", file.path, "': ", file.vertices.size(), " vertices, ",
+                            file.faces.size(), " faces, ", file.ropes.size(), " links of lines; ",
+                            1 + *std::ranges::max_element(piece), " piece(s)\n");
+  text += concat("  unit: ", sizes.x(), " x ", sizes.y(), " x ", sizes.z(), " m, if --set scale=1",
+                 largest > 20     ? "; that is large: centimetres would be scale=0.01\n"
+                 : largest < 0.02 ? "; that is small: check the unit\n"
+                                  : "\n");
+  text += concat("  warp and weft: the sides of ", cloth.quads.size(), " quads, of which ",
+                 cloth.quads.size() -
+                     static_cast<std::size_t>(std::ranges::count_if(
+                         file.faces, [](const auto& face) { return face.corners.size() == 4; })),
+                 " are two triangles; the other ", cloth.triangles.size(),
+                 " triangles are held by springs\n");
+  text +=
+      concat("  ", count_cloth(cloth).second,
+             " sides keep their length; pinned: ", std::ranges::count(cloth.held, char{1}),
+             " vertices; loaded: ",
+             model.loaded ? std::ranges::count_if(model.start.vertices, model.loaded) : 0, "\n");
+  text += concat("  below: ", model.body.triangles.size(), " triangles of a body",
+                 model.floor ? concat(", a floor at ", *model.floor) : "", "\n");
+  return text;
+}
+
 std::shared_ptr<const MeshModel> read_model(const std::string& name) {
   auto model = std::make_shared<MeshModel>();
   auto parts = parts_of(name);
@@ -301,6 +334,7 @@ std::shared_ptr<const MeshModel> read_model(const std::string& name) {
                      "': nothing is pinned and nothing is below; add --pins 'y > ...', --floor "
                      "HEIGHT or --collider FILE");
   check_cloth(path, file, cloth, model->has_body(), welded.has_value());
+  model->description = description_of(*model, file, cloth);
   if (model->body.triangles.empty()) return model;
   try {
     check_start(path, model->start, inextensible::TriangleCollider(model->body, 0));
@@ -344,11 +378,10 @@ void add_floor(inextensible::TriangleMesh& body, double height, const Eigen::Ali
 Scene build_mesh(const MeshModel& model, const SceneParameters& p) {
   const ClothMesh begins = refined(model.start, whole(p)), start = placed(begins, p);
   Draft draft = cloth_draft(cloth_for(model, begins, p), p);
-  Eigen::AlignedBox3d box;
+  const Eigen::AlignedBox3d box = box_of(start.vertices);
   int loaded = 0;
   for (std::size_t v = 0; v < start.vertices.size(); ++v) {
     draft.scene.start.x.col(static_cast<Eigen::Index>(v)) = start.vertices[v];
-    box.extend(start.vertices[v]);
     loaded += model.loaded && model.loaded(begins.vertices[v]);
   }
   for (std::size_t v = 0; loaded > 0 && v < start.vertices.size(); ++v)
@@ -409,7 +442,8 @@ SceneType mesh_scene(const std::string& name) {
                 return count_cloth(cloth_for(*model, refined(model->start, whole(p)), p));
               },
           .like = model->has_body() ? "drape" : "patch",
-          .identity = model->identity};
+          .identity = model->identity,
+          .description = model->description};
 }
 
 }  // namespace harness

@@ -73,6 +73,7 @@ struct SceneType {
   const char* resolution = "n";  // the parameter that a resolution sweep turns
   // A hash of the files that the scene is made of. Empty: the name says all.
   std::string identity = {};
+  std::string description = {};  // of a mesh, in lines: what was read, and what becomes of it
 
   std::string kind() const { return *like ? like : name; }
 };

@@ -127,8 +127,15 @@ void print_planes(std::ostream& out, const std::vector<json>& sweeps) {
   if (sweeps.empty()) return;
   const Runs runs(joined(sweeps));
   std::vector<Plane> all = planes_of(runs);
-  std::erase_if(all, [](const Plane& plane) {
-    return std::ranges::none_of(plane.cells, [](const Cell& cell) { return cell.counting(1); });
+  // Steps of a scene and size that a sweep over strain has too are for figures.
+  const auto same_place = [](const Plane& a, const Plane& b) {
+    return a.scene == b.scene && a.vertices == b.vertices;
+  };
+  std::erase_if(all, [&, planes = all](const Plane& plane) {
+    return std::ranges::none_of(plane.cells, [](const Cell& cell) { return cell.counting(1); }) ||
+           (plane.sweep == "step" && std::ranges::any_of(planes, [&](const Plane& other) {
+              return other.sweep == "strain" && same_place(plane, other);
+            }));
   });
   for (const auto& [title, planes] : grouped(all, title_of)) {
     out << "### " << title << "\n\n";
