@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "harness/base/journal.h"
 #include "harness/base/pattern.h"
-#include "harness/base/small_runs.h"
 #include "harness/points/schema.h"
 #include "harness/scenes/scene.h"
 

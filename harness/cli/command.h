@@ -22,7 +22,6 @@
 #include "harness/base/interrupt.h"
 #include "harness/base/journal.h"
 #include "harness/base/json.h"
-#include "harness/base/small_runs.h"
 #include "harness/base/text.h"
 #include "harness/points/contestant.h"
 #include "harness/run/sweep.h"
@@ -176,9 +175,8 @@ struct SweepOptions : SceneOptions {
   std::int64_t seed = -1;
   bool untimed = false;  // need not wait for other programs that take times
 
-  // Each adds to the one before. of_suites: options that hard cases do not have.
+  // The second adds to the first. of_suites: options that hard cases do not have.
   void declare_scenes(const Command& to, const Command& of_suites);
-  void declare_selection(const Command& to, const Command& of_suites);
   void declare(const Command& to, const Command& of_suites);
 };
 

@@ -114,12 +114,6 @@ const std::vector<List> lists{
         })};
 constexpr int usual = 3;  // how many are printed if no list is named
 
-Words list_names() {
-  Words names = names_of(lists);
-  names.emplace_back("points");
-  return names;
-}
-
 std::string text_of(const json& row, const char* key) {
   const json value = row.value(key, json(""));
   return value.is_string() ? value.get<std::string>() : number_text(value.get<double>());
@@ -143,40 +137,27 @@ void print_rows(const json& rows) {
   }
 }
 
-struct ListVerb : SweepOptions {
+struct ListVerb {
   std::string what;
   bool as_json = false;
 
   void declare(const Command& command) {
     std::string names;
-    for (const std::string& name : list_names()) names += (names.empty() ? "" : ", ") + name;
+    for (const List& each : lists) append(names, each.name);
     command.option("what", what,
                    names +
-                       " (with --sweep); default: the first three. result.schema and the like: "
-                       "that file of configs/, generated from the tables in the code",
+                       "; default: the first three. result.schema and the like: that file of "
+                       "configs/, generated from the tables in the code",
                    "WHAT");
-    declare_selection(command, command);
     command.flag("--json", as_json, "as JSON");
   }
 
-  void print_points() const {
-    for (const Search& search : plan(load_suite(*this), filters_of(*this))) {
-      PointSpec spec = search.base;
-      for (const double step : search.ladder) {
-        spec.step = step;
-        std::cout << spec.id() << '\n';
-      }
-    }
-  }
-
-  // Points and schemas, which are not lists of rows.
-  void print_other() const {
-    if (as_json) throw UsageError("--json does not go with list " + what);
-    if (what == "points") return print_points();
+  void print_schema() const {
     const std::vector<std::string> schemas = generated_schemas();
     const std::string schema = what.substr(0, what.find(".schema"));
     if (schema == what || std::ranges::count(schemas, schema) == 0)
-      throw unknown_name("list", what, list_names());
+      throw unknown_name("list", what, names_of(lists));
+    if (as_json) throw UsageError("--json does not go with list " + what);
     std::cout << schema_text(schema);
   }
 
@@ -184,7 +165,7 @@ struct ListVerb : SweepOptions {
     std::vector<List> chosen(lists.begin(), what.empty() ? lists.begin() + usual : lists.end());
     if (!what.empty())
       std::erase_if(chosen, [this](const List& each) { return each.name != what; });
-    if (chosen.empty()) print_other();
+    if (chosen.empty()) print_schema();
     json all = json::object();
     for (const List& each : chosen) {
       all[each.name] = each.rows();

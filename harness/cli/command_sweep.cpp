@@ -1,7 +1,7 @@
 // bench --sweep strain|resolution|step|stability, and the sweeps of a suite.
 #include <utility>
 
-#include "harness/base/small_runs.h"
+#include "harness/base/journal.h"
 #include "harness/base/timing_lock.h"
 #include "harness/cli/command.h"
 #include "harness/judge/reference_routes.h"

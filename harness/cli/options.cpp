@@ -73,15 +73,11 @@ void SweepOptions::declare_scenes(const Command& to, const Command& of_suites) {
   SceneOptions::declare(of_suites, "all of the suite's");
 }
 
-void SweepOptions::declare_selection(const Command& to, const Command& of_suites) {
+void SweepOptions::declare(const Command& to, const Command& of_suites) {
   declare_scenes(to, of_suites);
   add_solver(to, solver);
   add_limits(of_suites, limits, "the suite's");
   add_filters(of_suites, filter, exclude);
-}
-
-void SweepOptions::declare(const Command& to, const Command& of_suites) {
-  declare_selection(to, of_suites);
   to.option("--seed", seed, "of random orders", "N", Bounds::exact_number());
   of_suites.option("--reps", reps, "samples of each point that may be best", "N",
                    Bounds::whole_number(1));

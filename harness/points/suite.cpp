@@ -39,13 +39,11 @@ void read_steps(const json& steps, const std::string& where, SweepSpec& spec) {
 void fit_steps_to_duration(double duration, bool coarsest_given, SweepSpec& spec) {
   if (!coarsest_given) spec.coarsest = std::min(spec.coarsest, duration);
   if (spec.coarsest > duration)
-    throw UsageError("'duration' is " + number_text(duration) +
-                     " s, must be at least the longest step, " + number_text(spec.coarsest) +
-                     " s ('steps': 'coarsest')");
+    throw UsageError(concat("'duration' is ", duration, " s, must be at least the longest step, ",
+                            spec.coarsest, " s ('steps': 'coarsest')"));
   if (duration / spec.finest > most_steps)
-    throw UsageError("'duration' is " + number_text(duration) + " s, more than " +
-                     number_text(most_steps) + " steps of " + number_text(spec.finest) +
-                     " s ('steps': 'finest')");
+    throw UsageError(concat("'duration' is ", duration, " s, more than ", most_steps, " steps of ",
+                            spec.finest, " s ('steps': 'finest')"));
 }
 
 SweepSpec read_sweep(const json& object, const std::string& where, const Tuned* tuned,

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "harness/base/errors.h"
+#include "harness/base/text.h"
 
 namespace harness {
 namespace {
@@ -46,9 +47,8 @@ void check_sides(const MeshFile& file, const std::vector<MeshFile::Face>& faces)
     for (std::size_t k = 0; k < face.corners.size(); ++k) {
       const Side s = side_of(face.corners, k);
       if (++faces_at[s] > 2)
-        throw UsageError(file.name(face) + ": the side between vertices " +
-                         std::to_string(s.first + 1) + " and " + std::to_string(s.second + 1) +
-                         " belongs to more than two faces");
+        throw UsageError(concat(file.name(face), ": the side between vertices ", s.first + 1,
+                                " and ", s.second + 1, " belongs to more than two faces"));
     }
   }
 }
@@ -270,8 +270,8 @@ ClothMesh cloth_of(const MeshFile& file) {
     if (!taken[t]) cloth.triangles.push_back(triangles[t]);
   for (const auto& [a, b] : file.ropes) {
     if (file.vertices[a] == file.vertices[b])
-      throw UsageError("'" + file.path + "': a line between vertices " + std::to_string(a + 1) +
-                       " and " + std::to_string(b + 1) + " has no length");
+      throw UsageError(concat("'", file.path, "': a line between vertices ", a + 1, " and ", b + 1,
+                              " has no length"));
     cloth.ropes.push_back({vertex(a), vertex(b)});
   }
   return cloth;

@@ -33,8 +33,7 @@ int corner_of(const std::string& word, std::size_t vertices, const std::string& 
   const auto count = static_cast<long>(vertices);
   const long index = number < 0 ? count + number : number - 1;
   if (number == 0 || index < 0 || index >= count)
-    throw UsageError(where + ": no vertex " + std::to_string(number) + " among the " +
-                     std::to_string(count) + " so far");
+    throw UsageError(concat(where, ": no vertex ", number, " among the ", count, " so far"));
   return static_cast<int>(index);
 }
 

@@ -56,7 +56,7 @@ Condition read_condition(const std::string& text, const MeshFile& file) {
   }
   if (std::sscanf(text.c_str(), "v%ld%n", &number, &read) == 1 && all_read()) {
     if (number < 1 || number > std::ssize(file.vertices))
-      throw UsageError("pins: '" + file.path + "' has no vertex " + std::to_string(number));
+      throw UsageError(concat("pins: '", file.path, "' has no vertex ", number));
     return [at = file.vertices[number - 1]](const Eigen::Vector3d& x) { return x == at; };
   }
   double value = 0;
@@ -176,10 +176,10 @@ void check_cloth(const std::string& path, MeshFile file, const ClothMesh& cloth,
   if (std::ranges::all_of(cloth.held, std::identity{}))
     throw UsageError("'" + path + "': all vertices are pinned, nothing can move");
   if (constraints == 0)
-    throw UsageError("'" + path + "': no side of its " +
-                     std::to_string(cloth.quads.size() + cloth.triangles.size()) +
-                     " faces is constrained, since triangles that make no quads are springs: there "
-                     "is nothing to compare");
+    throw UsageError(
+        concat("'", path, "': no side of its ", cloth.quads.size() + cloth.triangles.size(),
+               " faces is constrained, since triangles that make no quads are springs: there "
+               "is nothing to compare"));
   const std::vector<int> piece = pieces_of(cloth);
   const int pieces = 1 + *std::ranges::max_element(piece);
   std::set<int> held;
@@ -209,10 +209,9 @@ void check_start(const std::string& path, const ClothMesh& cloth,
     deepest = std::min(deepest, height);
   }
   if (inside > 0)
-    throw UsageError("'" + path + "': " + std::to_string(inside) + " of " +
-                     std::to_string(cloth.vertices.size()) +
-                     " vertices begin inside the body, as deep as " + number_text(-deepest, 3) +
-                     " of the file's units");
+    throw UsageError(concat("'", path, "': ", inside, " of ", cloth.vertices.size(),
+                            " vertices begin inside the body, as deep as ",
+                            number_text(-deepest, 3), " of the file's units"));
 }
 
 // The same faces and lines elsewhere.

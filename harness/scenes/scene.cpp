@@ -60,8 +60,8 @@ SceneParameters complete_parameters(const SceneType& type, const SceneParameters
     const std::string bound = info.integer ? "a whole number of at least " + number_text(info.low)
                               : info.low == zero_too ? "at least 0"
                                                      : "above " + number_text(info.low);
-    throw UsageError("scene " + type.name + ": '" + info.name + "' is " + number_text(value) +
-                     ", must be " + bound + " and at most " + number_text(info.high));
+    throw UsageError(concat("scene ", type.name, ": '", info.name, "' is ", value, ", must be ",
+                            bound, " and at most ", info.high));
   }
   return all;
 }

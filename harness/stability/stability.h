@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "harness/base/journal.h"
 #include "harness/base/pattern.h"
-#include "harness/base/small_runs.h"
 #include "harness/judge/reference.h"
 #include "harness/stability/hard_case.h"
 #include "harness/stability/trial.h"

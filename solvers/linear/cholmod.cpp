@@ -1,4 +1,4 @@
-// CHOLMOD's simplicial and supernodal Cholesky (Chen et al. 2008) on a matrix in elimination order.
+// CHOLMOD's supernodal Cholesky (Chen et al. 2008) on a matrix in elimination order.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -12,10 +12,10 @@ namespace {
 
 class CholmodSolver final : public SpdSolver, CholmodAnalysis {
  public:
-  CholmodSolver(SymmetricPattern pattern, int supernodal)
+  explicit CholmodSolver(SymmetricPattern pattern)
       : SpdSolver(pattern.entries()), pattern_(std::move(pattern)) {
-    common.supernodal = supernodal;
-    common.final_ll = supernodal == CHOLMOD_SUPERNODAL;  // simplicial: L D L^T
+    common.supernodal = CHOLMOD_SUPERNODAL;
+    common.final_ll = 1;
     common.quick_return_if_not_posdef = 1;
     matrix_ = cholmod_view(pattern_, values_.data());
     analyze(pattern_);
@@ -33,16 +33,7 @@ class CholmodSolver final : public SpdSolver, CholmodAnalysis {
     if (!std::isfinite(std::accumulate(values_.begin(), values_.end(), 0.0))) return false;
     const bool done = cholmod_factorize(&matrix_, l, &common);
     if (common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
-    if (!done || common.status != CHOLMOD_OK || l->minor != l->n) return false;
-    if (l->is_super || l->is_ll) return true;
-    // L D L^T goes on through negative pivots: look at them.
-    const auto* start = static_cast<const int*>(l->p);
-    const auto* value = static_cast<const double*>(l->x);
-    for (int i = 0; i < pattern_.n; ++i) {
-      const std::size_t diagonal = pattern_.diagonal(i);
-      if (!(value[start[i]] > least_pivot_ * values_[diagonal])) return false;
-    }
-    return true;
+    return done && common.status == CHOLMOD_OK && l->minor == l->n;
   }
 
   void solve(double* rhs) override {
@@ -63,11 +54,8 @@ class CholmodSolver final : public SpdSolver, CholmodAnalysis {
 
 }  // namespace
 
-std::unique_ptr<SpdSolver> make_cholmod_simplicial(SymmetricPattern pattern) {
-  return std::make_unique<CholmodSolver>(std::move(pattern), CHOLMOD_SIMPLICIAL);
-}
 std::unique_ptr<SpdSolver> make_cholmod_supernodal(SymmetricPattern pattern) {
-  return std::make_unique<CholmodSolver>(std::move(pattern), CHOLMOD_SUPERNODAL);
+  return std::make_unique<CholmodSolver>(std::move(pattern));
 }
 
 std::vector<int> fill_reducing_order(const SymmetricPattern& pattern) {

@@ -9,7 +9,6 @@ namespace inextensible {
 // Solvers whose classes are private to their files.
 std::unique_ptr<SpdSolver> make_tridiagonal(SymmetricPattern pattern);
 std::unique_ptr<SpdSolver> make_block_tridiagonal(SymmetricPattern pattern);
-std::unique_ptr<SpdSolver> make_cholmod_simplicial(SymmetricPattern pattern);
 std::unique_ptr<SpdSolver> make_cholmod_supernodal(SymmetricPattern pattern);
 
 namespace {
@@ -42,8 +41,6 @@ constexpr SpdSolverRow table[] = {
      make<MultifrontalCholesky<double>>},
     {"multifrontal_mixed", "the same in single precision where that is enough", lower, Takes::any,
      make<MixedCholesky>, Precision::mixed},
-    {"cholmod_simplicial", "CHOLMOD's simplicial Cholesky", upper, Takes::any,
-     make_cholmod_simplicial},
     {"cholmod_supernodal", "CHOLMOD's supernodal Cholesky", lower, Takes::any,
      make_cholmod_supernodal},
 };

@@ -22,14 +22,6 @@ using Bending = std::vector<BendingStencil>;
 // rigidity EI (N m^2): energy EI / 2 times squared curvature times the length that falls to b.
 BendingStencil yarn_bending(int a, int b, int c, double l_ab, double l_bc, double rigidity);
 
-// Isometric bending of a triangle mesh, flat at rest: one stencil an inner edge (Bergou et al.
-// 2006, eq. 5). x: 3 x n, m, where lengths and angles are those of rest. rigidity: of the plate, N
-// m, when it is rolled to a cylinder of equilateral triangles; squares cut along alternating
-// diagonals have that along their sides and half as much again across, squares all cut alike up to
-// three times. Throws std::invalid_argument for a triangle without area.
-Bending plate_bending(const std::vector<std::array<int, 3>>& triangles, const Eigen::Matrix3Xd& x,
-                      double rigidity);
-
 // J, at x (3 x n, m).
 double bending_energy(const Bending& bending, const Eigen::Matrix3Xd& x);
 

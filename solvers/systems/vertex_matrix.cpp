@@ -25,8 +25,7 @@ VertexMatrix::VertexMatrix(const Problem& problem, const Pairs& coupled, std::st
   const bool chains = std::ranges::all_of(
       pairs, [](const auto& pair) { return std::abs(pair.first - pair.second) == 1; });
   // Instructions of a second of implicit springs, in 1e6: on the chain of 80, block_tridiagonal 23,
-  // multifrontal 54, cholmod_simplicial 79; on the drape of 21 x 21, multifrontal 3400,
-  // cholmod_supernodal 5100, cholmod_simplicial 10000.
+  // multifrontal 54; on the drape of 21 x 21, multifrontal 3400, cholmod_supernodal 5100.
   linear_solver = wanted != "auto" ? std::string(wanted)
                   : !chains        ? "multifrontal"
                   : block == 1     ? "tridiagonal"

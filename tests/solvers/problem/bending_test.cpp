@@ -16,44 +16,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-// n x n vertices of a flat sheet: equilateral triangles, or squares cut along diagonals in turn.
-struct Sheet {
-  Positions x;
-  std::vector<std::array<int, 3>> triangles;
-  double area;
-};
-Sheet sheet(int n, bool equilateral) {
-  const double l = 1.0 / (n - 1), row = equilateral ? std::sqrt(0.75) * l : l;
-  Sheet s{Positions(3, n * n), {}, (n - 1) * l * (n - 1) * row};
-  const auto at = [n](int i, int j) { return i * n + j; };
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j) {
-      s.x.col(at(i, j)) << j * l + (equilateral ? 0.5 * i * l : 0), i * row, 0;
-      if (i + 1 == n || j + 1 == n) continue;
-      const int a = at(i, j), b = at(i, j + 1), c = at(i + 1, j), d = at(i + 1, j + 1);
-      if (!equilateral && (i + j) % 2 == 0) {
-        s.triangles.insert(s.triangles.end(), {{a, b, d}, {a, d, c}});
-      } else {
-        s.triangles.insert(s.triangles.end(), {{a, b, c}, {b, d, c}});
-      }
-    }
-  }
-  return s;
-}
-
-// The energy of a sheet rolled to a cylinder, its axis turned by `angle`, over the continuum's.
-double rolled(int n, bool equilateral, double angle) {
-  constexpr double radius = 0.8, rigidity = 0.02;
-  const Sheet flat = sheet(n, equilateral);
-  const Bending bending = plate_bending(flat.triangles, flat.x, rigidity);
-  Positions x = Eigen::AngleAxisd(angle, Vector3d::UnitZ()).toRotationMatrix() * flat.x;
-  for (Eigen::Index i = 0; i < x.cols(); ++i) {
-    const double s = x(0, i) / radius;
-    x.col(i) << radius * std::sin(s), x(1, i), radius * (1 - std::cos(s));
-  }
-  return bending_energy(bending, x) / (0.5 * rigidity / (radius * radius) * flat.area);
-}
-
 // In links of two lengths, one after the other.
 TEST(YarnBending, OfACircleIsHalfItsRigidityTimesCurvatureSquaredTimesLength) {
   constexpr double radius = 0.7, rigidity = 0.3;
@@ -81,41 +43,21 @@ TEST(YarnBending, OfACircleIsHalfItsRigidityTimesCurvatureSquaredTimesLength) {
 }
 
 // Free edges bear no stencil of their own: a strip along them is missing.
-TEST(PlateBending, OfACylinderIsHalfItsRigidityTimesCurvatureSquaredTimesArea) {
-  for (const double angle : {0.0, 0.3, 0.7}) {
-    EXPECT_NEAR(rolled(21, true, angle), 1, 3.0 / 21) << angle;
-    EXPECT_NEAR(rolled(81, true, angle), 1, 3.0 / 81) << angle;
-  }
-  EXPECT_NEAR(rolled(81, false, 0), 1, 3.0 / 81);
-  for (const double angle : {0.3, 0.7}) {
-    EXPECT_GT(rolled(81, false, angle), 1) << angle;
-    EXPECT_LT(rolled(81, false, angle), 1.55) << angle;
-  }
-}
-
-TEST(PlateBending, OfAFlatSheetIsNothingHoweverItLies) {
-  const Sheet flat = sheet(6, false);
-  const Bending bending = plate_bending(flat.triangles, flat.x, 1);
-  EXPECT_EQ(bending.size(), 5u * 5 + 2 * 5 * 4);  // diagonals and inner sides
-  Positions x = Eigen::AngleAxisd(0.8, Vector3d(1, 2, 3).normalized()).toRotationMatrix() * flat.x;
-  x.colwise() += Vector3d(0.3, -2, 5);
-  EXPECT_LT(bending_energy(bending, x), 1e-24);
-  EXPECT_THROW(plate_bending({{0, 1, 2}}, Positions::Zero(3, 3), 1), std::invalid_argument);
-}
-
 // Shear, bending and gravity together, on a sheet crumpled at random: stencils of consecutive
 // vertices, which are found side by side, and others.
 TEST(Forces, AreTheEnergysDifferences) {
   testing::Random random(7);
   constexpr int side = 7, n = side * side;
-  const Sheet flat = sheet(side, false);
+  Positions flat(3, n);
   ProblemParts parts;
-  parts.bending = plate_bending(flat.triangles, flat.x, 0.1);
+  parts.bending.push_back({{0, 8, 3, 20}, {2, -3, 0.5, 0.5}, 0.1});
   parts.bending.push_back(yarn_bending(0, 1, 2, 0.3, 0.35, 0.2));
   parts.shear = Springs{{{0, 9}, {1, 4}, {1, 4}}, {0.4, 0.5, 0.4}, {3, 2, 1}};
   for (int i = 0; i < n; ++i) {
     parts.mass.push_back(0.5 + 0.1 * i);
+    flat.col(i) << i % side / 6.0, i / side / 6.0, 0;
     if (i % side + 1 == side || i + side >= n) continue;
+    parts.bending.push_back({{i, i + 1, i + side, i + side + 1}, {1, -1, -1, 1}, 0.1});
     for (const Edge diagonal : {Edge{i, i + side + 1}, Edge{i + 1, i + side}}) {
       parts.shear->edges.push_back(diagonal);
       parts.shear->rest_length.push_back(0.3 + 0.01 * i);
@@ -126,7 +68,7 @@ TEST(Forces, AreTheEnergysDifferences) {
   }
   parts.pinned = {3};
   const Problem problem(parts);
-  const Positions x = flat.x + 0.2 * testing::random_matrix(random, 3, n);
+  const Positions x = flat + 0.2 * testing::random_matrix(random, 3, n);
   WorkCounters work;
   Positions force = Positions::Zero(3, n), still = force;
   add_forces(problem, x, x, still, force, work);
