@@ -161,10 +161,10 @@ void TriangleCollider::lay_out_grid() {
     low_ = low_.cwiseMin(v);
     high = high.cwiseMax(v);
   }
-  const Vector3d margin =
+  const Vector3d box_margin =
       Vector3d::Constant(1e-9 * (high - low_).norm());  // no vertex on the grid's own border
-  low_ -= margin;
-  cell_size_ = (high + margin - low_) / resolution;
+  low_ -= box_margin;
+  cell_size_ = (high + box_margin - low_) / resolution;
   inverse_cell_size_ = cell_size_.cwiseInverse();
   for (int f = 0; f < triangles(); ++f) {
     const Vector3d& normal = pseudonormal_[f][0];
