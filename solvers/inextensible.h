@@ -28,7 +28,7 @@
 #ifndef INEXTENSIBLE_H
 #define INEXTENSIBLE_H
 
-#include <stdint.h>
+#include <stdint.h> /* NOLINT: C has no <cstdint> */
 
 #define INEXTENSIBLE_ABI 1
 

@@ -121,8 +121,8 @@ std::string impossible(const json& point) {
   if (samples.empty()) return "";
   const auto [least, most] = std::ranges::minmax(samples);
   if (!(least > 0)) return "has a time that is not positive";
-  const auto fits = [&](const char* key, double value) {
-    return std::abs(number(times, key) - value) <= 1e-6 * most;
+  const auto fits = [&, scale = most](const char* key, double value) {
+    return std::abs(number(times, key) - value) <= 1e-6 * scale;
   };
   if (!fits("min", least) || !fits("median", quantile(samples, 0.5)) ||
       !fits("q1", quantile(samples, 0.25)) || !fits("q3", quantile(samples, 0.75)))

@@ -233,6 +233,7 @@ std::vector<int> pieces_of(const ClothMesh& mesh) {
   join(mesh.ropes);
   std::map<int, int> number;
   std::vector<int> piece;
+  piece.reserve(root.size());
   for (int v = 0; v < static_cast<int>(root.size()); ++v)
     piece.push_back(number.try_emplace(root_of(v), static_cast<int>(number.size())).first->second);
   return piece;
