@@ -52,7 +52,8 @@ exits 4 'SLOWER' compare baseline.json faulty.json
 # timed NAME RUNS FACTOR [SENTINEL]: base.json with RUNS samples a point, all longer by a factor.
 timed() {
   local sentinel=${4-"{'noisy': False}"}
-  edit base.json "$1.json" "[t.update(samples=[$3 * t['samples'][0] * (1 + 0.001 * i) for i in range($2)])
+  edit base.json "$1.json" "[(lambda s: t.update(samples=s, **{key: s[0] * (1 + 0.001 * part * ($2 - 1)) for key, part in
+    dict(min=0, q1=0.25, median=0.5, q3=0.75).items()}))([$3 * t['samples'][0] * (1 + 0.001 * i) for i in range($2)])
 for p in d['points'] for t in [p['seconds_per_simulated_second']] if t]; d['context']['sentinel'] = $sentinel"
 }
 noisy="{'noisy': True, 'spread': 0.3}"

@@ -29,7 +29,7 @@ namespace {
 bool is(const char* kind) {
   Dl_info info;
   return dladdr(reinterpret_cast<const void*>(&is), &info) != 0 &&
-         std::string_view(info.dli_fname).ends_with("_" + std::string(kind) + ".so");
+         std::string_view(info.dli_fname).ends_with(std::string("_").append(kind).append(".so"));
 }
 
 void print_if_loud() {
