@@ -106,8 +106,14 @@ constexpr double near_body = 1.1, near_start = 3;
 
 std::vector<Vector3d> in_sight(const Recording& recording, const std::vector<std::size_t>& frames) {
   const Positions& start = recording.takes.at(0).frames.at(0);
-  const bool body = !recording.body.vertices.empty();
-  const Positions body_start = body ? body_at(recording, 0) : start;
+  const Box cloth(start.rowwise().minCoeff(), start.rowwise().maxCoeff());
+  std::vector<Eigen::Index> near;  // corners of the body; not those of a floor
+  const Positions whole_body = body_at(recording, 0);
+  for (Eigen::Index i = 0; i < whole_body.cols(); ++i)
+    if ((whole_body.col(i) - cloth.center()).norm() < 4 * cloth.diagonal().norm())
+      near.push_back(i);
+  const bool body = !near.empty();
+  const Positions body_start = body ? Positions(whole_body(Eigen::all, near)) : start;
   const Vector3d at_first =
       Box(body_start.rowwise().minCoeff(), body_start.rowwise().maxCoeff()).center();
   double reach = 0;
@@ -123,8 +129,8 @@ std::vector<Vector3d> in_sight(const Recording& recording, const std::vector<std
         middle = recording.body_poses.at(frame)(recording.body_poses[0].inverse()(middle));
       for (const auto& point : take.frames[frame].colwise())
         if ((point - middle).norm() <= followed) all.emplace_back(point);
-      const Positions around = body_at(recording, frame);  // empty where there is no body
-      for (const auto& corner : around.colwise()) all.emplace_back(corner);
+      const Positions around = body_at(recording, frame);
+      for (const Eigen::Index i : near) all.emplace_back(around.col(i));
     }
   }
   return all;
