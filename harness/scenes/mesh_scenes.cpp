@@ -321,6 +321,8 @@ std::shared_ptr<const MeshModel> read_model(const std::string& name) {
   if (parts.contains("load")) model->loaded = read_pins(without_spaces(parts["load"]), file);
   model->floor = number_of(parts, "floor", -1e6);
   if (parts.contains("body")) model->body = body_of(read(parts["body"]));
+  if (model->floor && parts.contains("body"))
+    throw UsageError("--floor and --collider exclude each other: only one body is searched fast");
 
   const ClothMesh cloth = with_pins(*model, model->cloth, model->start);
   const bool holds = std::ranges::any_of(cloth.held, std::identity{});
