@@ -302,6 +302,10 @@ std::shared_ptr<const MeshModel> read_model(const std::string& name) {
     throw UsageError("'" + path + "' has changed: the scene's files and pins have the hash " +
                      expected + ", these have " + model->identity);
   model->name = name + (expected.empty() ? ",content=" + model->identity : "");
+  // A large body takes seconds to examine, and a scene is looked up many times.
+  static std::map<std::string, std::shared_ptr<const MeshModel>> known;
+  std::shared_ptr<const MeshModel>& kept = known[model->name];
+  if (kept) return kept;
 
   const std::optional<double> welded = number_of(parts, "weld", 0);
   if (welded && parts.contains("rest")) throw UsageError("--weld and --rest exclude each other");
@@ -336,13 +340,13 @@ std::shared_ptr<const MeshModel> read_model(const std::string& name) {
                      "HEIGHT or --collider FILE");
   check_cloth(path, file, cloth, model->has_body(), welded.has_value());
   model->description = description_of(*model, file, cloth);
-  if (model->body.triangles.empty()) return model;
+  if (model->body.triangles.empty()) return kept = model;
   try {
     check_start(path, model->start, inextensible::TriangleCollider(model->body, 0));
   } catch (const std::invalid_argument& error) {
     throw UsageError("'" + parts["body"] + "' is not a body to collide with: " + error.what());
   }
-  return model;
+  return kept = model;
 }
 
 // Metres, with y upwards.
