@@ -79,23 +79,23 @@ typedef struct InextensibleScene {
 typedef struct InextensibleStep {
   uint64_t size; /* as of InextensibleScene */
   double h, time;
-  /* Of a step: x and v at its start, which it replaces by those at its end. Of a filter: x is the
+  /* A step replaces x and v at its start by those at its end. For a filter, x is the
    * candidate, which it moves to positions that keep the limit; v is NULL. Pinned vertices are
    * where they end the step; what is written to them is ignored. */
   double *x, *v;
-  const double* x_start; /* of a filter: positions at the start of the step; else NULL */
+  const double* x_start; /* for a filter: positions at the start of the step; else NULL */
   const double* force;   /* N, 3 a vertex: shear, bending and drag at the start of the step, of
-                            methods   with INEXTENSIBLE_WANTS_FORCES; NULL: the scene has none */
+                            methods with INEXTENSIBLE_WANTS_FORCES; NULL: the scene has none */
   const double* pose;    /* the body at the end of the step: three rows of a rotation with a fourth
                             column, the translation; NULL: it does not move */
-  /* Of a filter: moves vertices of x that have gone through their contact planes back onto them.
-   * NULL where nothing can be touched. The result of a filter must not need it. */
+  /* A filter calls it: it moves vertices of x that have gone through their contact planes back
+   * onto them. NULL where nothing can be touched. The result of a filter must not need it. */
   void (*settle)(struct InextensibleStep* step);
 
   /* What the method may write; 0 at first. */
   int64_t iterations, edge_projections, assemblies, factorizations, back_solves; /* of this step */
   double copy_seconds; /* of the call: to bring x and v to an engine and back, if it is known */
-  const char* reason;  /* of a refusal: a literal */
+  const char* reason;  /* why a step is refused: a literal */
 } InextensibleStep;
 
 /* ---- What a method says of itself ---- */

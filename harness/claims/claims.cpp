@@ -204,10 +204,9 @@ std::vector<ClaimVerdict> judge_points(const claims::Points& points) {
 
 }  // namespace
 
-void check_timed(const json& result) {
+void check_timed(const json& result, const std::string& name) {
   if (!is_timed(result))
-    throw UsageError(
-        "a result was made with --untimed, so its times are meaningless; leave it out");
+    throw UsageError(name + " was made with --untimed, so its times are meaningless; leave it out");
 }
 
 std::vector<ClaimVerdict> judge_claims(const std::vector<json>& results) try {

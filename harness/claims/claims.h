@@ -106,7 +106,7 @@ struct ClaimVerdict : claims::Verdict {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ClaimVerdict, id, statement, verdict, measured, rule)
 
 // Throws UsageError for a result of --untimed, whose times say nothing.
-void check_timed(const nlohmann::json& result);
+void check_timed(const nlohmann::json& result, const std::string& name = "a result");
 
 // results: documents of schemas inextensible-bench/1 and inextensible-stability/1. Where several
 // have a point, the first one's counts; a verdict that the last one's would change is undecided.

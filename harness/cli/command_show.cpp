@@ -21,8 +21,7 @@ std::vector<NamedResult> read_all(const Words& files, ResultKinds kinds) {
   std::vector<NamedResult> results;
   for (const std::string& file : files) {
     results.push_back({file, read_result(file, kinds)});
-    if (!is_timed(results.back().document))
-      throw UsageError("'" + file + "' was made with --untimed: its times mean nothing");
+    check_timed(results.back().document, "'" + file + "'");
   }
   return results;
 }
@@ -76,6 +75,7 @@ struct Show {
         throw UsageError("'" + name +
                          "' has no strain limits and errors to be analyzed; --json is for sweeps "
                          "over strain, resolution and step");
+      check_timed(document, "'" + name + "'");
       std::cout << analysis::analysis_of(document).dump(1) << '\n';
       return success;
     }

@@ -31,7 +31,8 @@ double meets(const TriangleMesh& mesh, const std::array<int, 3>& triangle, const
   return u >= 0 && v >= 0 && u + v <= 1 ? e2.dot(q) / det : never;
 }
 
-// From the middles of faces straight into the body: the shortest way out. Of at most 250 faces.
+// The shortest way from the middle of a face straight through the body; at most 250 faces are
+// tried.
 double thickness_of(const TriangleMesh& mesh) {
   double least = never;
   const std::size_t faces = mesh.triangles.size(), stride = 1 + faces / 250;

@@ -92,6 +92,7 @@ refused "process $pid is timing runs" "${one[@]}" --out out.json --no-wait
 refused "process $pid is timing runs" tune --scene chain --out out.json --no-wait
 makes untimed.json "${one[@]}" --untimed
 refused "was made with --untimed" plot untimed.json
+refused "was made with --untimed" show untimed.json --json
 refused "was made with --untimed" claims untimed.json
 "$BENCH_BINARY" "${one[@]}" --out waited.json >/dev/null 2>waited.txt &
 waiting=$!
