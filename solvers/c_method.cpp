@@ -55,6 +55,10 @@ struct SceneArrays {
     }
     if (problem.collider()) add_body(problem);
     scene.along_middle = along == Along::middle;
+    if (!options.start) return;
+    start = *options.start;
+    scene.x = start.x.data();
+    scene.v = start.v.data();
   }
 
   void add_body(const Problem& problem) {
@@ -69,6 +73,7 @@ struct SceneArrays {
   }
 
   InextensibleScene scene{};
+  State start;  // a copy: an object that is made anew is made like the first one
   std::vector<double> mass, drag, coefficients, stiffness;
   std::vector<std::int32_t> stencils;
 };
@@ -90,12 +95,7 @@ class Object {
         settings_.push_back(options.number(setting.name));
       }
     }
-    if (options.start) {
-      arrays_.scene.x = options.start->x.data();
-      arrays_.scene.v = options.start->v.data();
-    }
     make();
-    arrays_.scene.x = arrays_.scene.v = nullptr;
   }
   Object(const Object&) = delete;
   Object& operator=(const Object&) = delete;
