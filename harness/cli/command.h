@@ -158,9 +158,10 @@ inline std::vector<Verb> verbs() {
 struct SceneOptions {
   std::string scene;
   Numbers n;
-  Words set;                                        // NAME=NUMBER
-  std::string pins, load, body, floor, rest, weld;  // for a mesh
-  int least_n = 2;                                  // of --n
+  Words set;                                                        // NAME=NUMBER
+  std::string pins, load, floor, rest, weld, thickness, triangles;  // for a mesh
+  Words body, body_then;
+  int least_n = 2;  // of --n
 
   void declare(const Command& to, const std::string& standard);
   std::string name() const;                     // with what belongs to a mesh

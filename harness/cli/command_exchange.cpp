@@ -35,7 +35,9 @@ struct Export : SceneOptions {
     if (!std::filesystem::create_directory(partial, error))
       throw FileError(out, "make folder", error.message());
     try {
-      write_scene(partial, *type, parameters, reference != nullptr);
+      nlohmann::json said = about(*type, parameters);
+      if (reference) said["reference"] = "reference.npz";
+      write_scene(partial, type->build(parameters), said);
     } catch (const std::invalid_argument& impossible) {  // parameters that make no scene
       std::filesystem::remove_all(partial, error);
       throw UsageError(impossible.what());

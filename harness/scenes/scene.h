@@ -95,16 +95,18 @@ Scene built_scene(std::string_view name, const SceneParameters& given = {});
 //
 // Warp and weft are the sides of quads. Two triangles that make a good quad are taken as one;
 // springs alone hold the remaining triangles, as a net of inextensible triangles would not bend. A
-// body is a closed mesh, the floor a height. Lines are ropes. Pins and loads are conditions joined
-// by "and" and "or": "y > 1.2", "x <= 0", "v12" (a vertex of the file) and "near(0:1:0)" (the
-// nearest one).
+// body is a closed mesh, the floor a height. Lines are ropes. With triangles=midpoints each
+// triangle keeps its shape, and bends against its neighbours (cloth_mesh.h). Pins and loads are
+// conditions joined by "and" and "or": "y > 1.2", "x <= 0", "v12" (a vertex of the file) and
+// "near(0:1:0)" (the nearest one).
 
 bool names_mesh(std::string_view scene);  // "mesh:..."
 
 // The scene's name with those parts that are not empty, in the file's unit, and with the hash of
-// all that it is made of: pins, load (where a weight hangs), body (a file), floor (a height), rest
-// (a file with the unstretched shape), weld (corners this close are one). Throws UsageError for
-// other parts, and for any where the scene is not a mesh.
+// all that it is made of: pins, load (where a weight hangs), body (files, between semicolons),
+// body_then (where it is later, the same), thickness (of an open body), floor (a height), rest (a
+// file with the unstretched shape), weld (corners this close are one), triangles. Throws UsageError
+// for other parts, and for any where the scene is not a mesh.
 std::string with_mesh_parts(const std::string& scene,
                             const std::vector<std::pair<std::string, std::string>>& parts);
 

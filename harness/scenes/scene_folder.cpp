@@ -59,27 +59,12 @@ inextensible::BodyMotion motion_of(const json& list) {
     poses.push_back({rows.leftCols<3>(), rows.col(3)});
   }
   if (poses.size() < 2) throw std::invalid_argument("'body_poses' must have two poses or more");
-  return [poses](double time) {
-    const auto last = static_cast<double>(poses.size() - 1);
-    const double at = std::clamp(time / pose_interval, 0.0, last);
-    const auto first = std::min(static_cast<std::size_t>(at), poses.size() - 2);
-    const Pose &before = poses[first], &after = poses[first + 1];
-    const double part = at - static_cast<double>(first);
-    const Eigen::Quaterniond turn =
-        Eigen::Quaterniond(before.turn).slerp(part, Eigen::Quaterniond(after.turn));
-    return Pose{turn.toRotationMatrix(),
-                (1 - part) * before.translation + part * after.translation};
-  };
+  return motion_through(std::move(poses), pose_interval);
 }
 
-json document_of(const SceneType& type, const SceneParameters& p, const Scene& scene) {
+json document_of(const Scene& scene) {
   const inextensible::Problem& problem = *scene.problem;
   json document{{"schema", "inextensible-scene/1"},
-                {"name", type.name},
-                {"kind", type.kind()},
-                {"parameters", p},
-                {"n", p.at(type.resolution)},
-                {"duration", scene.duration},
                 {"size", scene.size},
                 {"gravity", numbers_of(problem.gravity())},
                 {"mass", problem.mass()},
@@ -147,7 +132,8 @@ std::shared_ptr<const inextensible::Collider> body_of(const json& document,
 Scene scene_of(const json& document, const std::string& folder) {
   const MeshFile cloth = read_mesh_file(folder + "/cloth.obj");
   const json none = json::array();
-  Draft draft(static_cast<int>(cloth.vertices.size()), {{"duration", document.at("duration")}});
+  Draft draft(static_cast<int>(cloth.vertices.size()),
+              {{"duration", document.value("duration", 1.0)}});
   Scene& scene = draft.scene;
   inextensible::ProblemParts& parts = draft.parts;
   std::copy(cloth.vertices.begin(), cloth.vertices.end(), scene.start.x.colwise().begin());
@@ -175,7 +161,7 @@ Scene scene_of(const json& document, const std::string& folder) {
   if (moves) parts.body_motion = motion_of(document.at("body_poses"));
   scene.energy_bound = document.value(
       "energy_bound", moves ? std::numeric_limits<double>::infinity() : scene.energy_bound);
-  document.at("size").get_to(scene.size);
+  scene.size = document.value("size", scene.size);
   scene.triangles = document.value("triangles", none).get<std::vector<std::array<int, 3>>>();
   scene.corners = document.value("corners", none).get<std::vector<int>>();
   scene.conserves_energy = document.value("conserves_energy", false);
@@ -193,10 +179,31 @@ Scene scene_of(const json& document, const std::string& folder) {
 
 }  // namespace
 
-void write_scene(const std::string& folder, const SceneType& type, const SceneParameters& complete,
-                 bool reference) {
-  const Scene scene = type.build(complete);
-  json document = document_of(type, complete, scene);
+inextensible::BodyMotion motion_through(std::vector<Pose> poses, double interval) {
+  return [poses = std::move(poses), interval](double time) {
+    const auto last = static_cast<double>(poses.size() - 1);
+    const double at = std::clamp(time / interval, 0.0, last);
+    const auto first = std::min(static_cast<std::size_t>(at), poses.size() - 2);
+    const Pose &before = poses[first], &after = poses[first + 1];
+    const double part = at - static_cast<double>(first);
+    const Eigen::Quaterniond turn =
+        Eigen::Quaterniond(before.turn).slerp(part, Eigen::Quaterniond(after.turn));
+    return Pose{turn.toRotationMatrix(),
+                (1 - part) * before.translation + part * after.translation};
+  };
+}
+
+json about(const SceneType& type, const SceneParameters& complete) {
+  return {{"name", type.name},
+          {"kind", type.kind()},
+          {"parameters", complete},
+          {"n", complete.at(type.resolution)},
+          {"duration", complete.at("duration")}};
+}
+
+void write_scene(const std::string& folder, const Scene& scene, const json& about) {
+  json document = document_of(scene);
+  document.update(about);
   const auto write = [&](const std::string& file, const std::string& text) {
     write_atomically(folder + "/" + file, text);
   };
@@ -211,7 +218,6 @@ void write_scene(const std::string& folder, const SceneType& type, const ScenePa
                        vertices.data()->data(), 3, static_cast<Eigen::Index>(vertices.size())),
                    body->mesh().triangles, {}));
   }
-  if (reference) document["reference"] = "reference.npz";
   write("scene.json", document_text(document));
 }
 
@@ -236,7 +242,7 @@ SceneType folder_scene(const std::string& name) {
     if (expected != std::string::npos && name.substr(expected + 9) != identity)
       throw std::invalid_argument("the files have changed: their hash was " +
                                   name.substr(expected + 9) + " and is now " + identity);
-    const double n = document.at("n"), duration = document.at("duration");
+    const double n = document.value("n", 1.0), duration = document.value("duration", 1.0);
     // Built once: a scene with a mistake is refused here.
     const auto built = std::make_shared<const Scene>(scene_of(document, folder));
     return {
@@ -253,7 +259,7 @@ SceneType folder_scene(const std::string& name) {
             [built](const SceneParameters&) {
               return std::pair{built->problem->vertices(), built->problem->constraints()};
             },
-        .like = document.at("kind"),
+        .like = document.value("kind", document.contains("body") ? "drape" : "patch"),
         .identity = identity,
         .reference = document.contains("reference")
                          ? folder + "/" + document.at("reference").get<std::string>()

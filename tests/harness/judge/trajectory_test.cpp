@@ -35,7 +35,7 @@ TEST(SceneFolder, EverySceneReadsBackToTheLastBit) {
     SCOPED_TRACE(type.name);
     const SceneParameters p = complete_parameters(type, {{"n", 9}});
     const TemporaryFolder folder("scene");
-    write_scene(folder.path(), type, p, false);
+    write_scene(folder.path(), type.build(p), about(type, p));
     const SceneType again = folder_scene(folder.path());
     EXPECT_EQ(again.kind(), type.kind());
     const Scene scene = type.build(p), copy = again.build(complete_parameters(again, {}));
@@ -57,9 +57,8 @@ TEST(SceneFolder, EverySceneReadsBackToTheLastBit) {
 }
 
 TEST(SceneFolder, MistakesAreNamed) {
-  const auto type = find_scene("drape");
   const TemporaryFolder folder("scene");
-  write_scene(folder.path(), *type, complete_parameters(*type, {{"n", 5}}), false);
+  write_scene(folder.path(), built_scene("drape", {{"n", 5}}), {});
   const std::string path = folder.file("scene.json");
   const nlohmann::json good = parse_document(read_file(path, "scene"), path);
   const auto refused = [&](const nlohmann::json& patch, const std::string& named) {

@@ -76,6 +76,8 @@ use() {
     compare) words=(small.json small.json) ;;
     baseline) words=(small.json --out baseline.json) ;;
     ab) words=("$bench" "$bench" --scene chain --solver fast_projection --filter 'strain:0.01/' --pairs 4 --sample-seconds 0.001) ;;
+    export) words=(--scene chain --out exported) ;;
+    judge) words=(exported exported/reference.npz) ;;
     tune) words=(--scene chain --solver icd --out tuned.json) ;;  # there already
     reference) words=(--profile pairs --scene chain) ;;           # there already
   esac
