@@ -137,6 +137,8 @@ Action verb(const Command& command) {
   VERB(tune, true,                                                                                \
        "search the settings of each solver, by one rule, on scenes that no result reports")       \
   VERB(reference, false, "compute the trajectories that errors are measured against")             \
+  VERB(export, false, "write a scene as files for other programs: OBJ, JSON and NumPy arrays")    \
+  VERB(judge, false, "judge the motion that another program made of an exported scene")           \
   VERB(point, false, "run single points, given as JSON on standard input, one a line")            \
   VERB(list, false, "print what there is: solvers, scenes, suites, verbs, cases and more")
 

@@ -9,6 +9,7 @@
 #include "harness/cli/command.h"
 #include "harness/judge/reference.h"
 #include "harness/scenes/scene.h"
+#include "harness/scenes/scene_folder.h"
 #include "solvers/registry.h"
 
 namespace harness {
@@ -16,7 +17,9 @@ namespace harness {
 using nlohmann::json;
 
 void SceneOptions::declare(const Command& to, const std::string& standard) {
-  to.option("--scene", scene, "one of `bench list scenes`, or mesh:FILE.obj; default: " + standard,
+  to.option("--scene", scene,
+            "one of `bench list scenes`, mesh:FILE.obj, or a folder of bench export; default: " +
+                standard,
             "SCENE");
   to.option("--n", n, "size of the scene; a resolution sweep takes several, e.g. 20,40,80", "N",
             Bounds::whole_number(least_n));
@@ -38,6 +41,7 @@ void SceneOptions::declare(const Command& to, const std::string& standard) {
 }
 
 std::string SceneOptions::name() const {
+  if (names_folder(scene)) return find_scene(scene)->name;
   return with_mesh_parts(scene, {{"pins", pins},
                                  {"load", load},
                                  {"body", body},

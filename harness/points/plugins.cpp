@@ -26,25 +26,44 @@ std::deque<InextensibleMethod>
     adopted_methods;  // of all plug-ins; rows of the registry refer to them
 std::deque<std::vector<InextensibleSetting>> adopted_settings;
 
-using EntryPoint = decltype(&inextensible_plugin);
-
-EntryPoint entry_point(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error))
-    throw std::runtime_error("there is no such file");
-  // A path without a slash would be looked for in the system's folders. What is missing is missed
-  // now, not in the middle of a sweep.
-  void* library = dlopen(std::filesystem::absolute(path).c_str(), RTLD_NOW | RTLD_LOCAL);
+// A function of a library. What the library lacks is missed now, not in the middle of a sweep.
+template <class Function>
+Function function_of(const std::string& path, int scope, const char* name) {
+  void* library = dlopen(path.c_str(), RTLD_NOW | scope);
   if (!library) throw std::runtime_error(dlerror());
-  void* symbol = dlsym(library, "inextensible_plugin");
+  void* symbol = dlsym(library, name);
   if (!symbol)
-    throw std::runtime_error(
-        "it is not a plug-in: it has no function inextensible_plugin (solvers/inextensible.h)");
-  return reinterpret_cast<EntryPoint>(symbol);
+    throw std::runtime_error(std::string("it is not a plug-in: it has no function ") + name +
+                             " (solvers/inextensible.h)");
+  return reinterpret_cast<Function>(symbol);
 }
 
-const InextensiblePlugin& table_of(const std::string& path) {
-  const InextensiblePlugin* table = entry_point(path)();
+// A file of solvers in Python, which a library of its own knows how to load. That one's symbols,
+// Python's, are for all: extension modules of Python want them.
+const InextensiblePlugin* python_table(const std::string& path) {
+  const std::string bridge = library_path("libinextensible_python.so");
+  if (bridge.empty())
+    throw std::runtime_error(
+        "this bench was built without Python; build it again after apt-get install pybind11-dev "
+        "python3-dev python3-numpy");
+  using Load = const InextensiblePlugin* (*)(const char* path, const char** error);
+  const char* error = "";
+  const InextensiblePlugin* table =
+      function_of<Load>(bridge, RTLD_GLOBAL, "inextensible_python")(path.c_str(), &error);
+  if (!table) throw std::runtime_error(error);
+  return table;
+}
+
+const InextensiblePlugin& table_of(const std::string& file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error))
+    throw std::runtime_error("there is no such file");
+  // A path without a slash would be looked for in the system's folders.
+  const std::string path = std::filesystem::absolute(file);
+  const InextensiblePlugin* table = path.ends_with(".py")
+                                        ? python_table(path)
+                                        : function_of<decltype(&inextensible_plugin)>(
+                                              path, RTLD_LOCAL, "inextensible_plugin")();
   if (!table) throw std::runtime_error("inextensible_plugin() returned nothing");
   if (table->abi != INEXTENSIBLE_ABI)
     throw std::runtime_error("it was built for version " + std::to_string(table->abi) +

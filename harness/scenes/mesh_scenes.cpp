@@ -302,11 +302,6 @@ std::shared_ptr<const MeshModel> read_model(const std::string& name) {
     throw UsageError("'" + path + "' has changed: the scene's files and pins have the hash " +
                      expected + ", these have " + model->identity);
   model->name = name + (expected.empty() ? ",content=" + model->identity : "");
-  // A large body takes seconds to examine, and a scene is looked up many times.
-  static std::map<std::string, std::shared_ptr<const MeshModel>> known;
-  std::shared_ptr<const MeshModel>& kept = known[model->name];
-  if (kept) return kept;
-
   const std::optional<double> welded = number_of(parts, "weld", 0);
   if (welded && parts.contains("rest")) throw UsageError("--weld and --rest exclude each other");
   const auto read = [&](const std::string& file) {
@@ -340,13 +335,13 @@ std::shared_ptr<const MeshModel> read_model(const std::string& name) {
                      "HEIGHT or --collider FILE");
   check_cloth(path, file, cloth, model->has_body(), welded.has_value());
   model->description = description_of(*model, file, cloth);
-  if (model->body.triangles.empty()) return kept = model;
+  if (model->body.triangles.empty()) return model;
   try {
     check_start(path, model->start, inextensible::TriangleCollider(model->body, 0));
   } catch (const std::invalid_argument& error) {
     throw UsageError("'" + parts["body"] + "' is not a body to collide with: " + error.what());
   }
-  return kept = model;
+  return model;
 }
 
 // Metres, with y upwards.
@@ -421,7 +416,7 @@ std::string with_mesh_parts(const std::string& scene,
       throw UsageError("'" + text + "': a comma cannot stand here or in a file's name");
     name += "," + part + "=" + (part == "body" || part == "rest" ? text : without_spaces(text));
   }
-  if (names_mesh(scene)) return read_model(name)->name;
+  if (names_mesh(scene)) return find_scene(name)->name;
   if (name != scene)
     throw UsageError("'" + name.substr(scene.size() + 1) +
                      "' goes with --scene mesh:FILE.obj, not with '" + scene + "'");

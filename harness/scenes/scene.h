@@ -48,7 +48,7 @@ struct Scene {
   bool staggered = true;
   // Vertices whose sag a result states.
   struct Mark {
-    const char* name;
+    std::string name;
     int vertex;
     double height;  // m, at which it would hang if nothing stretched
   };
@@ -66,7 +66,7 @@ struct SceneType {
   std::function<std::pair<int, int>(const SceneParameters& complete)> counts;
   // Positions at a time (s) where the motion is known exactly: errors need no reference then.
   inextensible::Positions (*exact)(const SceneParameters& complete, double time) = nullptr;
-  const char* like = "";  // the scene whose tuned settings it takes; empty: its own
+  std::string like = {};  // the scene whose tuned settings it takes; empty: its own
   // Straight from a pinned end, with nothing in its way: the links of a pendulum in a plane, whose
   // smooth motion scenes/pendulum.h integrates in angles.
   bool pendulum = false;
@@ -74,12 +74,14 @@ struct SceneType {
   // A hash of the files that the scene is made of. Empty: the name says all.
   std::string identity = {};
   std::string description = {};  // of a mesh, in lines: what was read, and what becomes of it
+  std::string reference = {};    // the .npz file of its reference; empty: it is looked for by name
 
-  std::string kind() const { return *like ? like : name; }
+  std::string kind() const { return like.empty() ? name : like; }
 };
 
 std::span<const SceneType> scene_types();
-// Also "mesh:...", which throws UsageError for files that it cannot use. Null: no such scene.
+// Also "mesh:..." and "folder:..." (scene_folder.h), which throw UsageError for files that they
+// cannot use; the files are read once. Null: no such scene.
 std::shared_ptr<const SceneType> find_scene(std::string_view name);
 std::vector<std::string> scene_kinds();  // of all scenes, each once
 

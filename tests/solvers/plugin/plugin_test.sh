@@ -27,6 +27,9 @@ rope/rope >rope.txt || fail "the program of one's own: $(cat rope.txt)"
 "$bench" list --plugin "$plugin" solvers | grep -q '^  symmetric_sweeps: ' || fail "--plugin after the command"
 "$bench" list solvers | grep -q symmetric && fail "a solver that was not loaded"
 
+[[ ! -e $BUILD_FOLDER/libinextensible_python.so ]] ||
+  "$bench" --plugin "$SOURCE_FOLDER/contestants/python/gauss_seidel.py" list solvers | grep -q numpy_gauss || fail "an installed bench without Python"
+
 tiny() {
   "$bench" --plugin "$plugin" --sweep strain --profile pairs --scene chain --n 20 --reps 1 --filter 'strain:0.01/' "$@"
 }
