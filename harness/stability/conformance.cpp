@@ -194,9 +194,9 @@ Findings ordinary_runs(const Examinee& solver) {
                     worst = number_text(all.worst, 4);
   return {
       judged(all.stopped.empty(), "steps",
-             all.stopped.empty()
-                 ? text(all.steps, " steps of ", cases.size(), " scenes: a chain, a drape, nets")
-                 : "it does not get through " + all.stopped,
+             all.stopped.empty() ? text(all.steps, " steps of ", cases.size(),
+                                        " of 6 scenes (a chain, a drape, nets)")
+                                 : "it does not get through " + all.stopped,
              "easy scenes: at small steps the candidate nearly meets the limit; look at the "
              "iteration limit and at what ends the iteration"),
       judged(pins.empty(), "pins",

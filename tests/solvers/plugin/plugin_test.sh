@@ -53,7 +53,8 @@ tiny --solver 'symmetric_sweeps|gauss_seidel' --out figures/out.json >sweep.txt 
 grep -q 'could not be drawn' sweep.txt && fail "no figures: $(cat sweep.txt)"
 ls figures/*.svg >/dev/null || fail "no figures"
 "$bench" --plugin "$plugin" report figures/out.json --out page.html >report.txt 2>&1 || fail "a page of an installed bench: $(cat report.txt)"
-[[ -n $(find installed -name LICENSE) ]] || fail "the licence is not installed"
+[[ -n $(find installed -name LICENSE) && -n $(find installed -name NOTICE) ]] || fail "the license is not installed"
+[[ $("$bench" --version) == *MIT*'GPL, version 3 or later'* ]] || fail "--version does not name the licenses"
 
 # ---- Every verb of an installed bench ----
 tiny --solver fast_projection --no-plots --out small.json >sweep.txt 2>&1 || fail "a small sweep: $(cat sweep.txt)"
