@@ -60,10 +60,10 @@ const InextensiblePlugin& table_of(const std::string& file) {
     throw std::runtime_error("there is no such file");
   // A path without a slash would be looked for in the system's folders.
   const std::string path = std::filesystem::absolute(file);
-  const InextensiblePlugin* table = path.ends_with(".py")
-                                        ? python_table(path)
-                                        : function_of<decltype(&inextensible_plugin)>(
-                                              path, RTLD_LOCAL, "inextensible_plugin")();
+  const InextensiblePlugin* table =
+      path.ends_with(".py")
+          ? python_table(path)
+          : function_of<decltype(&inextensible_plugin)>(path, RTLD_LOCAL, "inextensible_plugin")();
   if (!table) throw std::runtime_error("inextensible_plugin() returned nothing");
   if (table->abi != INEXTENSIBLE_ABI)
     throw std::runtime_error("it was built for version " + std::to_string(table->abi) +
