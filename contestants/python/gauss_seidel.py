@@ -21,7 +21,7 @@ class GaussSeidel:
     label = "Gauss-Seidel (numpy)"
     takes = {"collider"}
     direction = "local"
-    settings = {"max_iterations": (100_000, 1, 10**9, "sweeps a step before it is refused")}
+    settings = {"max_iterations": (10_000, 1, 10**9, "sweeps a step before it is refused")}
 
     def __init__(self, scene, max_iterations):
         self.max_iterations, self.limit = max_iterations, scene.strain_limit

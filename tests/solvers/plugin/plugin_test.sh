@@ -18,9 +18,16 @@ ln -s "$SOURCE_FOLDER/solvers" solvers
 quietly "$CC" -std=c99 -Wall -Wextra -Wpedantic -Werror -O2 -shared -fPIC -Iinstalled/include my_solver.c -o strict.so -lm
 eval "quietly $(grep -m1 '^cc -O2 -shared' "$SOURCE_FOLDER/docs/plugins.md")"
 
-CMAKE_GENERATOR=Ninja quietly cmake -S "$SOURCE_FOLDER/tests/solvers/plugin/rope" -B rope -DCMAKE_PREFIX_PATH="$PWD/installed"
-quietly cmake --build rope
-rope/rope >rope.txt || fail "the program of one's own: $(cat rope.txt)"
+# The program of solvers/README.md. With the core it needs no library beyond the compiler's.
+sed -n '/^<!-- file: cloth.cpp -->$/,/^```$/p' "$SOURCE_FOLDER/solvers/README.md" | sed '1,2d;$d' >cloth.cpp
+for library in core solvers; do
+  CMAKE_GENERATOR=Ninja quietly cmake -S "$SOURCE_FOLDER/tests/solvers/plugin/installed" -B build-$library -DCMAKE_PREFIX_PATH="$PWD/installed" \
+    -DCLOTH="$PWD/cloth.cpp" -DLIBRARY=$library
+  quietly cmake --build build-$library
+  build-$library/cloth >cloth.txt || fail "the program of one's own: $(cat cloth.txt)"
+done
+ldd build-core/cloth build-core/libshared.so | grep -Ei 'blas|lapack|cholmod|umfpack|amd|gomp' && fail "the core needs more than Eigen"
+ldd build-solvers/libshared.so | grep -q cholmod || fail "the shared library lacks CHOLMOD"
 
 # The option may stand before and after the command.
 "$bench" --plugin "$plugin" list solvers | grep -q '^  symmetric_sweeps: ' || fail "list does not show the plug-in's solver"
