@@ -106,7 +106,7 @@ class ProcessStepper final : public inextensible::Stepper {
     scene.start.x = Positions::Zero(3, problem().vertices());
     scene.start.v = scene.start.x;
     if (options.start) scene.start = *options.start;
-    write_scene(folder_.path(), scene, {});
+    write_scene(folder_.path(), scene);
     process_.hear();  // what it is
     json settings = json::object();
     for (const auto& [name, value] : options.settings) settings[name] = std::get<double>(value);
@@ -204,7 +204,9 @@ ProcessSolver process_solver(const std::string& command) {
                                      {"drag", &row.takes_drag},
                                      {"stiff_forces", &row.takes_implicit_forces},
                                      {"momentum", &row.conserves_momentum}};
-  for (const std::string part : about.value("takes", json::array())) {
+  const json takes = about.value("takes", json::array());
+  const json settings = about.value("settings", json::object());
+  for (const std::string part : takes) {
     if (!parts.contains(part))
       throw std::runtime_error("it takes '" + shortened(part) + "', which is unknown");
     *parts.at(part) = true;
@@ -212,7 +214,7 @@ ProcessSolver process_solver(const std::string& command) {
   if (about.value("whole_step", false)) row.velocities = inextensible::Velocities::whole_step;
   if (about.value("keeps_limit", false))
     row.strain_control = inextensible::StrainControl::strain_limit;
-  for (const auto& [name, numbers] : about.value("settings", json::object()).items())
+  for (const auto& [name, numbers] : settings.items())
     row.settings.push_back(setting_of(name, numbers));
   row.make = [command](std::shared_ptr<const inextensible::Problem> problem,
                        const inextensible::BackendOptions& options) {

@@ -219,7 +219,9 @@ std::vector<double> areas(const ClothMesh& mesh) {
 // Two triangles that share the midpoint m bend about the side that it halves, to which a1 - b1 and
 // a2 - b2 are parallel. Of T1 = (m, a1, b1) and q = a2 or b2 the sum of coefficients times
 // positions vanishes where both lie in one plane; turned by theta it is d theta, d the distance of
-// q from the side. Both sums share the energy of a hinge, B / 2 theta^2 3 |side|^2 / (A1 + A2).
+// q from the side. Both sums share the energy of a hinge, B / 2 theta^2 |side|^2 / (A1 + A2), which
+// is right for triangles of equal sides with their corners on a cylinder, whichever way it is
+// rolled (Seung and Nelson 1988, "Defects in flexible membranes with crystalline order").
 inextensible::Bending hinges_of(const ClothMesh& mesh, double rigidity) {
   std::vector<std::vector<std::array<int, 2>>> across(mesh.vertices.size());
   for (const auto& [a, b, c] : mesh.triangles) {
@@ -241,7 +243,7 @@ inextensible::Bending hinges_of(const ClothMesh& mesh, double rigidity) {
     const double d1 = side.cross(from_m(a1)).norm() / length;
     const double d2 = other.cross(from_m(a2)).norm() / other.norm();
     const double area = 4 * 0.5 * (length * d1 + other.norm() * d2), ratio = d2 / d1;
-    const double stiffness = rigidity * 3 * 4 * length * length / (2 * area * d2 * d2);
+    const double stiffness = rigidity * 2 * length * length / (area * d2 * d2);
     for (const int q : {a2, b2}) {
       if (mesh.held[a1] && mesh.held[b1] && mesh.held[m] && mesh.held[q]) continue;
       const double alpha = (along(q, other) + ratio * along(b1, side)) / length;

@@ -1,5 +1,6 @@
 // Cloth from files.
 #include <Eigen/Geometry>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -196,16 +197,23 @@ MeshFile thickened(MeshFile file, double thickness) {
   return file;
 }
 
-// The rigid motion that takes a body to its shape in another file.
+// The rigid motion that takes a body to its shape in another file (Kabsch 1976).
 inextensible::Pose pose_between(const MeshFile& body, const MeshFile& there) {
-  const auto columns = [](const std::vector<Eigen::Vector3d>& points) {
-    return Eigen::Map<const Eigen::Matrix3Xd>(points.data()->data(), 3, std::ssize(points));
-  };
   if (body.vertices.size() != there.vertices.size())
     throw UsageError("'" + there.path + "' has other vertices than '" + body.path + "'");
-  const Eigen::Matrix4d fit =
-      Eigen::umeyama(columns(body.vertices), columns(there.vertices), false);
-  const inextensible::Pose pose{fit.topLeftCorner<3, 3>(), fit.topRightCorner<3, 1>()};
+  const auto centre = [](const MeshFile& file) -> Eigen::Vector3d {
+    return std::reduce(file.vertices.begin(), file.vertices.end(), Eigen::Vector3d(0, 0, 0)) /
+           static_cast<double>(file.vertices.size());
+  };
+  const Eigen::Vector3d from = centre(body), to = centre(there);
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (std::size_t v = 0; v < body.vertices.size(); ++v)
+    spread += (there.vertices[v] - to) * (body.vertices[v] - from).transpose();
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(spread, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() > 0 ? 1 : -1;
+  const Eigen::Vector3d reflect(1, 1, sign);
+  const Eigen::Matrix3d turn = svd.matrixU() * reflect.asDiagonal() * svd.matrixV().transpose();
+  const inextensible::Pose pose{turn, to - turn * from};
   for (std::size_t v = 0; v < body.vertices.size(); ++v)
     if ((pose(body.vertices[v]) - there.vertices[v]).norm() >
         1e-4 * there.vertices[v].norm() + 1e-6)
@@ -265,13 +273,20 @@ void check_start(const std::string& path, const ClothMesh& cloth,
                             number_text(-deepest, 3), " of the file's units"));
 }
 
-// Throws UsageError where one body is inside another: their union would have faces within.
+// Throws UsageError where corners, sides or faces of one body begin, or have their middle, inside
+// another: their union would have faces within.
 void check_apart(const std::string& path, const inextensible::TriangleMesh& body,
                  const inextensible::TriangleMesh& others) {
   const inextensible::TriangleCollider one(body, 0), other(others, 0);
   const auto inside = [](const auto& mesh, const inextensible::TriangleCollider& around) {
-    return std::ranges::any_of(mesh.vertices, [&](const Eigen::Vector3d& v) {
-      return around.nearest(v).signed_distance < 0;
+    const auto within = [&](const Eigen::Vector3d& p) {
+      return around.nearest(p).signed_distance < 0;
+    };
+    return std::ranges::any_of(mesh.triangles, [&](const std::array<int, 3>& t) {
+      const Eigen::Vector3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]],
+                            &c = mesh.vertices[t[2]];
+      return within(a) || within((a + b) / 2) || within((b + c) / 2) || within((c + a) / 2) ||
+             within((a + b + c) / 3);
     });
   };
   if (inside(body, other) || inside(others, one))

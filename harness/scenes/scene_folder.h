@@ -13,7 +13,8 @@ namespace harness {
 // Writes scene.json, cloth.obj and, if there is a body, body.obj. A body that moves is written as
 // poses at intervals of a millisecond; between them it is read back by interpolation. about: what
 // scene.json says beside the physics; the second is what it says of a scene of this program.
-void write_scene(const std::string& folder, const Scene& scene, const nlohmann::json& about);
+void write_scene(const std::string& folder, const Scene& scene,
+                 const nlohmann::json& about = nlohmann::json::object());
 nlohmann::json about(const SceneType& type, const SceneParameters& complete);
 
 // Through poses at equal intervals (s) from time 0 on, at rest after the last: translations on

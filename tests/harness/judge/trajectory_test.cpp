@@ -58,7 +58,7 @@ TEST(SceneFolder, EverySceneReadsBackToTheLastBit) {
 
 TEST(SceneFolder, MistakesAreNamed) {
   const TemporaryFolder folder("scene");
-  write_scene(folder.path(), built_scene("drape", {{"n", 5}}), {});
+  write_scene(folder.path(), built_scene("drape", {{"n", 5}}));
   const std::string path = folder.file("scene.json");
   const nlohmann::json good = parse_document(read_file(path, "scene"), path);
   const auto refused = [&](const nlohmann::json& patch, const std::string& named) {
