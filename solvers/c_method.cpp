@@ -19,60 +19,6 @@ static_assert(sizeof(Edge) == 2 * sizeof(std::int32_t) &&
 
 bool has(const InextensibleMethod& method, int flag) { return (method.flags & flag) != 0; }
 
-// A problem as flat arrays.
-struct SceneArrays {
-  SceneArrays(const Problem& problem, const BackendOptions& options, Along along) {
-    scene.size = sizeof scene;
-    scene.vertices = problem.vertices();
-    scene.strain_limit = options.strain_limit;
-    scene.seed = options.seed;
-    std::copy(problem.gravity().begin(), problem.gravity().end(), scene.gravity);
-    mass = problem.mass();
-    for (const int pin : problem.pinned()) mass[pin] = 0;
-    scene.mass = mass.data();
-    scene.edges = problem.constraints();
-    scene.edge = &problem.edges().data()->a;
-    scene.rest_length = problem.rest_length().data();
-    if (const Springs* shear = problem.shear()) {
-      scene.springs = static_cast<std::int32_t>(shear->edges.size());
-      scene.spring = &shear->edges.data()->a;
-      scene.spring_length = shear->rest_length.data();
-      scene.spring_stiffness = shear->stiffness.data();
-    }
-    for (const BendingStencil& stencil : problem.bending()) {
-      stencils.insert(stencils.end(), stencil.vertex.begin(), stencil.vertex.end());
-      coefficients.insert(coefficients.end(), stencil.coefficient.begin(),
-                          stencil.coefficient.end());
-      stiffness.push_back(stencil.stiffness);
-    }
-    scene.stencils = static_cast<std::int32_t>(stiffness.size());
-    scene.stencil = stencils.data();
-    scene.stencil_coefficient = coefficients.data();
-    scene.stencil_stiffness = stiffness.data();
-    if (problem.has_drag()) {
-      for (int i = 0; i < problem.vertices(); ++i) drag.push_back(problem.drag(i));
-      scene.drag = drag.data();
-    }
-    if (problem.collider()) add_body(problem);
-    scene.along_middle = along == Along::middle;
-  }
-
-  void add_body(const Problem& problem) {
-    const auto* body = dynamic_cast<const TriangleCollider*>(problem.collider());
-    if (!body) throw std::invalid_argument("the collider is not a triangle mesh");
-    scene.body_vertices = static_cast<std::int32_t>(body->mesh().vertices.size());
-    scene.body_vertex = body->mesh().vertices.data()->data();
-    scene.body_triangles = body->triangles();
-    scene.body_triangle = body->mesh().triangles.data()->data();
-    scene.friction = body->friction();
-    scene.body_moves = static_cast<bool>(problem.body_motion());
-  }
-
-  InextensibleScene scene{};
-  std::vector<double> mass, drag, coefficients, stiffness;
-  std::vector<std::int32_t> stencils;
-};
-
 // An object of a method. It is made anew after an exception, when its state cannot be trusted.
 class Object {
  public:
@@ -90,12 +36,7 @@ class Object {
         settings_.push_back(options.number(setting.name));
       }
     }
-    if (options.start) {
-      arrays_.scene.x = options.start->x.data();
-      arrays_.scene.v = options.start->v.data();
-    }
     make();
-    arrays_.scene.x = arrays_.scene.v = nullptr;
   }
   Object(const Object&) = delete;
   Object& operator=(const Object&) = delete;
@@ -276,6 +217,56 @@ SettingInfo setting_of(const InextensibleMethod& method, const InextensibleSetti
 }
 
 }  // namespace
+
+SceneArrays::SceneArrays(const Problem& problem, const BackendOptions& options, Along along) {
+  scene.size = sizeof scene;
+  scene.vertices = problem.vertices();
+  scene.strain_limit = options.strain_limit;
+  scene.seed = options.seed;
+  std::copy(problem.gravity().begin(), problem.gravity().end(), scene.gravity);
+  mass = problem.mass();
+  for (const int pin : problem.pinned()) mass[pin] = 0;
+  scene.mass = mass.data();
+  scene.edges = problem.constraints();
+  scene.edge = &problem.edges().data()->a;
+  scene.rest_length = problem.rest_length().data();
+  if (const Springs* shear = problem.shear()) {
+    scene.springs = static_cast<std::int32_t>(shear->edges.size());
+    scene.spring = &shear->edges.data()->a;
+    scene.spring_length = shear->rest_length.data();
+    scene.spring_stiffness = shear->stiffness.data();
+  }
+  for (const BendingStencil& stencil : problem.bending()) {
+    stencils.insert(stencils.end(), stencil.vertex.begin(), stencil.vertex.end());
+    coefficients.insert(coefficients.end(), stencil.coefficient.begin(), stencil.coefficient.end());
+    stiffness.push_back(stencil.stiffness);
+  }
+  scene.stencils = static_cast<std::int32_t>(stiffness.size());
+  scene.stencil = stencils.data();
+  scene.stencil_coefficient = coefficients.data();
+  scene.stencil_stiffness = stiffness.data();
+  if (problem.has_drag()) {
+    for (int i = 0; i < problem.vertices(); ++i) drag.push_back(problem.drag(i));
+    scene.drag = drag.data();
+  }
+  if (problem.collider()) add_body(problem);
+  scene.along_middle = along == Along::middle;
+  if (!options.start) return;
+  start = *options.start;
+  scene.x = start.x.data();
+  scene.v = start.v.data();
+}
+
+void SceneArrays::add_body(const Problem& problem) {
+  const auto* body = dynamic_cast<const TriangleCollider*>(problem.collider());
+  if (!body) throw std::invalid_argument("the collider is not a triangle mesh");
+  scene.body_vertices = static_cast<std::int32_t>(body->mesh().vertices.size());
+  scene.body_vertex = body->mesh().vertices.data()->data();
+  scene.body_triangles = body->triangles();
+  scene.body_triangle = body->mesh().triangles.data()->data();
+  scene.friction = body->friction();
+  scene.body_moves = static_cast<bool>(problem.body_motion());
+}
 
 Backend row_of(const InextensibleMethod& method) {
   const std::string name = method.name ? method.name : "";

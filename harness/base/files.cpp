@@ -113,13 +113,16 @@ flock whole_file() {
 }
 
 // The share folder beside an installed program, "" for one in a build folder.
+fs::path program_folder() {
+  std::error_code error;  // no such file: an empty path
+  return fs::read_symlink("/proc/self/exe", error).parent_path();
+}
+
 const std::string& share_folder() {
   static const std::string folder = [] {
     std::error_code error;
-    const fs::path program = fs::read_symlink("/proc/self/exe", error);
-    const fs::path share =
-        (program.parent_path() / INEXTENSIBLE_DATA_FROM_PROGRAM).lexically_normal();
-    return !error && fs::is_directory(share / "configs", error) ? share.string() : std::string();
+    const fs::path share = (program_folder() / INEXTENSIBLE_DATA_FROM_PROGRAM).lexically_normal();
+    return fs::is_directory(share / "configs", error) ? share.string() : std::string();
   }();
   return folder;
 }
@@ -279,6 +282,14 @@ bool is_installed() { return !share_folder().empty(); }
 
 std::string source_path(const std::string& relative) {
   return (share_folder().empty() ? INEXTENSIBLE_SOURCE_DIR : share_folder()) + "/" + relative;
+}
+
+std::string library_path(const std::string& name) {
+  for (const char* place : {"", INEXTENSIBLE_LIBRARIES_FROM_PROGRAM}) {
+    const fs::path library = (program_folder() / place / name).lexically_normal();
+    if (std::error_code error; fs::is_regular_file(library, error)) return library;
+  }
+  return "";
 }
 
 std::string local_place(const std::string& name) {

@@ -116,6 +116,8 @@ void check_standard_output();
 bool is_installed();
 // A file that comes with the program, named as in the source tree, wherever it is installed.
 std::string source_path(const std::string& relative);
+// A shared library that comes with the program; "" if there is none.
+std::string library_path(const std::string& name);
 // The default place of results: results/local of the source tree; installed, of the current folder.
 std::string local_result(const std::string& name);
 // The same place, which is not created.

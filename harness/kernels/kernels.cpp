@@ -1,18 +1,27 @@
 // kernels: the inner pieces of a step, timed one by one by Google Benchmark, so that the cost of a
 // step can be explained from its parts. Names: piece/solver/scene:n. Matrices are those of a cloth
 // in mid-drape (above 150 vertices a side soon after its start) and a chain in mid-swing, at the
-// positions that a filter gets. collision_pass, strain_pass and solve include a copy of their
-// input, a few percent.
+// positions that a filter gets. Items are constrained edges, or vertices. collision_pass and the
+// solves include a copy of their input, a few percent. floor_ratio compares a pass of strain
+// limiting over all edges with the square root and the division that an edge costs at least;
+// of_peak and of_bandwidth compare flops of a factorization with those of a dense product, and
+// bytes of the factor, read twice by a solve, with the bandwidth at which an array of the factor's
+// size is read (the library prints such ratios with "/s" behind them).
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "harness/base/clock.h"
 #include "harness/base/errors.h"
 #include "harness/base/timing_lock.h"
 #include "harness/points/context.h"
@@ -22,11 +31,75 @@
 #include "solvers/registry.h"
 #include "solvers/systems/constraint_system.h"
 
+extern "C" double cblas_dasum(int n, const double* x, int stride);  // OpenBLAS
+
 namespace harness::kernels {
 namespace {
 
 using namespace inextensible;
 using benchmark::Counter;
+
+// ---- What one core of this machine can do at best: the floors that kernels are held against ----
+
+// s of processor time, the shortest of several runs, so that other programs do not count.
+template <class Work>
+double shortest(int rounds, Work work) {
+  double best = HUGE_VAL;
+  for (int round = 0; round < rounds; ++round) {
+    const double start = thread_seconds();
+    work();
+    best = std::min(best, thread_seconds() - start);
+  }
+  return best;
+}
+
+// s for a square root and a division, independent of others, in single precision and the
+// first-level cache: no pass that corrects every edge is faster. Measured at the first call.
+double sqrt_div_seconds() {
+  constexpr int passes = 20, edges = 1024;
+  static const double all = shortest(1000, [] {
+    std::array<float, edges> lengths{};
+    lengths.fill(1.2F);
+    for (int i = 0; i < passes; ++i) {
+      for (float& q : lengths) q = 1.5F - 0.5F / std::sqrt(q);
+      benchmark::DoNotOptimize(lengths);
+    }
+  });
+  return all / (passes * edges);
+}
+
+void read_all(const Eigen::VectorXd& data) {
+  benchmark::DoNotOptimize(cblas_dasum(static_cast<int>(data.size()), data.data(), 1));
+}
+
+// Bytes a second at which an array of that size is read over and over: of the cache that it fits
+// into, or of memory. Measured at the first call for a size, to a factor of two.
+double read_bandwidth(double bytes) {
+  static std::map<std::size_t, double> known;
+  const auto size =
+      std::bit_ceil(std::max<std::size_t>(128, static_cast<std::size_t>(bytes / sizeof(double))));
+  double& rate = known[size];
+  if (rate > 0) return rate;
+  const Eigen::VectorXd data = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(size));
+  const std::size_t passes = std::max<std::size_t>(1, (std::size_t{1} << 21) / size);
+  const double seconds = shortest(10, [&] {
+    for (std::size_t pass = 0; pass < passes; ++pass) read_all(data);
+  });
+  return rate = static_cast<double>(passes * size * sizeof(double)) / seconds;
+}
+
+// Floating-point operations a second in a product of dense matrices, which comes nearest to the
+// peak; a fused multiply-add counts as two. Measured at the first call.
+double peak_flops() {
+  constexpr int size = 256;
+  const Eigen::MatrixXd a = Eigen::MatrixXd::Ones(size, size);
+  Eigen::MatrixXd c = a;
+  static const double seconds = shortest(20, [&] {
+    c.noalias() = a * a;
+    benchmark::DoNotOptimize(c.data());
+  });
+  return 2.0 * size * size * size / seconds;
+}
 
 // A scene after some steps of fast projection: deformed, and in contact if there is an obstacle.
 // Made once: Google Benchmark calls each benchmark several times.
@@ -57,16 +130,12 @@ const Moment& moment(const std::string& scene, int n) {
   return m;
 }
 
-// Times work(), and how long it takes for each of these edges or vertices.
-template <class Work>
-void time(benchmark::State& state, int items, Work work) {
-  for ([[maybe_unused]] const auto iteration : state) {
-    work();
-    benchmark::ClobberMemory();
-  }
+Counter rate(double each) { return Counter(each, Counter::kIsIterationInvariantRate); }
+Counter average(double all) { return Counter(all, Counter::kAvgIterations); }
+
+void per_item(benchmark::State& state, int items, const char* what = "s_per_edge") {
   state.SetItemsProcessed(state.iterations() * items);
-  state.counters["s_per_item"] =
-      Counter(items, Counter::kIsIterationInvariantRate | Counter::kInvert);
+  state.counters[what] = Counter(items, Counter::kIsIterationInvariantRate | Counter::kInvert);
 }
 
 // ---- Passes over all edges or vertices ----
@@ -74,102 +143,168 @@ void time(benchmark::State& state, int items, Work work) {
 void edge_pass(benchmark::State& state, bool gradients, const std::string& scene, int n) {
   const Moment& m = moment(scene, n);
   const EdgeConstraints edges(m.problem(), 1);  // nothing violates: the whole pass
+  if (!edges.permissible(m.x0)) return state.SkipWithError("leaves early");
   Eigen::Matrix3Xd u(3, edges.count());
   Eigen::VectorXd c(edges.count());
-  time(state, edges.count(), [&] {
+  while (state.KeepRunning()) {
     benchmark::DoNotOptimize(gradients ? edges.linearize(m.x0, u, c) : edges.permissible(m.x0));
-  });
+    benchmark::ClobberMemory();
+  }
+  per_item(state, edges.count());
 }
 
-void free_step(benchmark::State& state, const std::string& scene, int n) {
+void vertex_pass(benchmark::State& state, bool collision, const std::string& scene, int n) {
   const Moment& m = moment(scene, n);
-  Positions x;
+  const Problem& problem = m.problem();
+  Positions x = m.x0;
   WorkCounters work;
-  time(state, m.problem().vertices(),
-       [&] { unconstrained_step(m.problem(), m.state, m.h, x, work); });
+  std::optional<Contacts> contacts;
+  if (collision) contacts.emplace(problem);
+  while (state.KeepRunning()) {
+    if (collision) {
+      x = m.x0;
+      contacts->begin(m.state.x, m.state.time, m.h);
+      contacts->push_out(x, work);
+    } else {
+      unconstrained_step(problem, m.state, m.h, x, work);
+    }
+    benchmark::ClobberMemory();
+  }
+  per_item(state, problem.vertices(), "s_per_vertex");
+  if (collision) state.counters["contacts"] = average(static_cast<double>(work.contacts));
 }
 
-void collision_pass(benchmark::State& state, const std::string& scene, int n) {
-  const Moment& m = moment(scene, n);
-  Positions x;
-  WorkCounters work;
-  Contacts contacts(m.problem());
-  time(state, m.problem().vertices(), [&] {
-    x = m.x0;
-    contacts.begin(m.state.x, m.state.time, m.h);
-    contacts.push_out(x, work);
-  });
-}
-
-// Passes over a cloth stretched by a fifth, so that nearly every edge is corrected.
-void strain_pass(benchmark::State& state, const std::string& method, int n) {
-  constexpr int passes = 10;
-  const Moment& m = moment("drape", n);
+std::unique_ptr<VelocityFilter> filter(const Problem& problem, const std::string& method,
+                                       double passes) {
   const Backend& row = *find_backend(method);
   BackendOptions options{.settings = complete_settings(row, {})};
-  options.settings["max_iterations"] = double{passes};
+  options.settings["max_iterations"] = passes;
   // A pass over yarns alone.
   if (const auto sweeps = options.settings.find("sweeps"); sweeps != options.settings.end())
     sweeps->second = 0.0;
-  const auto filter = row.make_filter(m.problem(), options, Along::edges);
-  Positions x;
-  WorkCounters work;
-  time(state, passes * m.problem().constraints(), [&] {
-    x = 1.2 * m.x0;
-    benchmark::DoNotOptimize(filter->apply(m.state.x, m.h, x, work));
-  });
+  return row.make_filter(problem, options, Along::edges);
 }
 
-// ---- J W J^T at x0, in the solver's order: assembly, factorization and back-substitution ----
+// Passes over a cloth stretched by a fifth, so that nearly every edge is corrected. A call that may
+// make no pass costs the checks, the refusal and the clock: its time is subtracted.
+void strain_pass(benchmark::State& state, const std::string& method, int n) {
+  const Moment& m = moment("drape", n);
+  constexpr int passes = 10;
+  const auto some = filter(m.problem(), method, passes), none = filter(m.problem(), method, 0);
+  const Positions stretched = 1.2 * m.x0;
+  Positions x = stretched;
+  WorkCounters work;
+  double total = 0;
+  while (state.KeepRunning()) {
+    x = stretched;
+    const double begin = thread_seconds();
+    benchmark::DoNotOptimize(none->apply(m.state.x, m.h, x, work));
+    const double middle = thread_seconds();
+    benchmark::DoNotOptimize(some->apply(m.state.x, m.h, x, work));
+    const double seconds = (thread_seconds() - middle) - (middle - begin);
+    state.SetIterationTime(seconds);
+    total += seconds;
+  }
+  const int visits = passes * m.problem().constraints();
+  per_item(state, visits);
+  state.counters["floor_ratio"] = average(total / visits / sqrt_div_seconds());
+  state.counters["corrected"] = average(static_cast<double>(work.edge_projections) / visits);
+}
 
-enum class Part { assembly, factor, solve };
+// ---- Assembly, factorization and back-substitution: of J W J^T, and of ICD's saddle point ----
 
-void linear_system(benchmark::State& state, const std::string& name, Part part,
+// J W J^T at x0 in the solver's order, not yet factored.
+struct Linearized {
+  Linearized(const Moment& m, std::string_view name)
+      : system(m.problem(), 0.01, name),
+        u(3, m.problem().constraints()),
+        c(m.problem().constraints()),
+        solver(make_spd_solver(system.solver_name(), system.schur().pattern())) {
+    system.edges().linearize(m.x0, u, c);
+    system.schur().assemble(u, solver->values());
+  }
+  ConstraintSystem system;
+  Eigen::Matrix3Xd u;
+  Eigen::VectorXd c;
+  std::unique_ptr<SpdSolver> solver;
+};
+
+void assembly(benchmark::State& state, const std::string& scene, int n) {
+  const Moment& m = moment(scene, n);
+  const Linearized l(m, "auto");
+  while (state.KeepRunning()) {
+    l.system.schur().assemble(l.u, l.solver->values());
+    benchmark::ClobberMemory();
+  }
+  per_item(state, m.problem().constraints());
+  state.counters["entries"] = l.system.schur().pattern().entries();
+}
+
+void linear_solver(benchmark::State& state, const std::string& name, bool solve,
                    const std::string& scene, int n) {
   const Moment& m = moment(scene, n);
-  const ConstraintSystem system(m.problem(), 0.01, name);
-  const int edges = m.problem().constraints();
-  Eigen::Matrix3Xd u(3, edges);
-  Eigen::VectorXd c(edges);
-  system.edges().linearize(m.x0, u, c);
-  const auto solver = make_spd_solver(system.solver_name(), system.schur().pattern());
-  system.schur().assemble(u, solver->values());
-  if (!solver->factor()) return state.SkipWithError("not positive definite");
-  Eigen::VectorXd x = c;
-  time(state, edges, [&] {
-    if (part == Part::assembly) system.schur().assemble(u, solver->values());
-    if (part == Part::factor) benchmark::DoNotOptimize(solver->factor());
-    if (part != Part::solve) return;
-    x = c;
-    solver->solve(x.data());
-  });
-  state.counters["nnz_L"] = solver->factor_nonzeros();
-  if (part == Part::factor)
-    state.counters["flops"] = Counter(solver->factor_flops(), Counter::kIsIterationInvariantRate);
+  const Linearized l(m, name);
+  if (!l.solver->factor()) return state.SkipWithError("not positive definite");
+  Eigen::VectorXd x = l.c;
+  while (state.KeepRunning()) {
+    if (solve) {
+      x = l.c;
+      l.solver->solve(x.data());
+    } else {
+      benchmark::DoNotOptimize(l.solver->factor());
+    }
+    benchmark::ClobberMemory();
+  }
+  per_item(state, m.problem().constraints());
+  state.counters["nnz_L"] = l.solver->factor_nonzeros();
+  if (solve) {
+    const double bytes = l.solver->factor_nonzeros() * sizeof(double);
+    state.counters["of_bandwidth"] = rate(2 * bytes / read_bandwidth(bytes));
+  } else {
+    state.counters["flops"] = rate(l.solver->factor_flops());
+    state.counters["of_peak"] = rate(l.solver->factor_flops() / peak_flops());
+  }
 }
 
 template <class Body, class... Arguments>
-void add(const std::string& name, const Body& body, const Arguments&... arguments) {
-  benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
-    body(state, arguments...);
-  })->Unit(benchmark::kMicrosecond);
+benchmark::internal::Benchmark* add(const std::string& name, const Body& body,
+                                    const Arguments&... arguments) {
+  return benchmark::RegisterBenchmark(name.c_str(),
+                                      [=](benchmark::State& state) { body(state, arguments...); })
+      ->Unit(benchmark::kMicrosecond);
 }
 
-void register_scene(const std::string& scene, int n, const std::vector<std::string>& solvers) {
+void register_steps(const std::string& scene, int n) {
   const std::string at = "/" + scene + ":" + std::to_string(n);
-  add("unconstrained_step" + at, free_step, scene, n);
+  add("unconstrained_step" + at, vertex_pass, false, scene, n);
   add("edge_pass" + at, edge_pass, true, scene, n);
   add("strain_check" + at, edge_pass, false, scene, n);
-  add("assembly" + at, linear_system, solvers.front(), Part::assembly, scene, n);
-  for (const std::string& name : solvers) {
-    add("factor/" + name + at, linear_system, name, Part::factor, scene, n);
-    add("solve/" + name + at, linear_system, name, Part::solve, scene, n);
-  }
   if (scene != "drape") return;
-  add("collision_pass" + at, collision_pass, scene, n);
+  add("collision_pass" + at, vertex_pass, true, scene, n);
   for (const std::string method :
        {"gauss_seidel", "gauss_seidel_colored", "jacobi", "yarn_projection"})
-    add("strain_pass/" + method + at, strain_pass, method, n);
+    add("strain_pass/" + method + at, strain_pass, method, n)->UseManualTime();
+}
+
+void register_linear_systems(const std::string& scene, int n, const std::vector<std::string>& spd) {
+  const std::string at = "/" + scene + ":" + std::to_string(n);
+  add("assembly" + at, assembly, scene, n);
+  for (const std::string& name : spd) {
+    add("factor/" + name + at, linear_solver, name, false, scene, n);
+    add("solve/" + name + at, linear_solver, name, true, scene, n);
+  }
+}
+
+void register_all() {
+  const std::vector<std::string> spd{"cholmod_supernodal", "multifrontal", "multifrontal_mixed"};
+  for (const int n : {80, 1000, 100000, 1000000}) {
+    register_steps("chain", n);
+    register_linear_systems("chain", n, {"tridiagonal"});
+  }
+  for (const int n : {15, 31, 71, 101}) {
+    register_steps("drape", n);
+    register_linear_systems("drape", n, spd);
+  }
 }
 
 }  // namespace
@@ -177,14 +312,15 @@ void register_scene(const std::string& scene, int n, const std::vector<std::stri
 
 int main(int argc, char** argv) try {
   harness::use_one_thread(argv);
+  // An option of all programs that time runs, which Google Benchmark does not know.
+  char** const end = std::remove_if(
+      argv + 1, argv + argc, [](const char* word) { return std::string(word) == "--no-wait"; });
+  const bool wait = end == argv + argc;
+  argc = static_cast<int>(end - argv);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  for (const int n : {80, 1000, 100000, 1000000})
-    harness::kernels::register_scene("chain", n, {"tridiagonal"});
-  for (const int n : {15, 31, 71, 101})
-    harness::kernels::register_scene("drape", n,
-                                     {"multifrontal", "multifrontal_mixed", "cholmod_supernodal"});
-  const harness::TimingLock lock;
+  harness::kernels::register_all();
+  const harness::TimingLock lock(wait);
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;

@@ -15,6 +15,7 @@
 #include "harness/base/files.h"
 #include "harness/base/pattern.h"
 #include "harness/base/text.h"
+#include "harness/points/processes.h"
 #include "solvers/c_method.h"
 #include "solvers/registry.h"
 
@@ -26,25 +27,44 @@ std::deque<InextensibleMethod>
     adopted_methods;  // of all plug-ins; rows of the registry refer to them
 std::deque<std::vector<InextensibleSetting>> adopted_settings;
 
-using EntryPoint = decltype(&inextensible_plugin);
-
-EntryPoint entry_point(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error))
-    throw std::runtime_error("there is no such file");
-  // A path without a slash would be looked for in the system's folders. What is missing is missed
-  // now, not in the middle of a sweep.
-  void* library = dlopen(std::filesystem::absolute(path).c_str(), RTLD_NOW | RTLD_LOCAL);
+// A function of a library. What the library lacks is missed now, not in the middle of a sweep.
+template <class Function>
+Function function_of(const std::string& path, int scope, const char* name) {
+  void* library = dlopen(path.c_str(), RTLD_NOW | scope);
   if (!library) throw std::runtime_error(dlerror());
-  void* symbol = dlsym(library, "inextensible_plugin");
+  void* symbol = dlsym(library, name);
   if (!symbol)
-    throw std::runtime_error(
-        "it is not a plug-in: it has no function inextensible_plugin (solvers/inextensible.h)");
-  return reinterpret_cast<EntryPoint>(symbol);
+    throw std::runtime_error(std::string("it is not a plug-in: it has no function ") + name +
+                             " (solvers/inextensible.h)");
+  return reinterpret_cast<Function>(symbol);
 }
 
-const InextensiblePlugin& table_of(const std::string& path) {
-  const InextensiblePlugin* table = entry_point(path)();
+// A file of solvers in Python, which a library of its own knows how to load. That one's symbols,
+// Python's, are for all: extension modules of Python want them.
+const InextensiblePlugin* python_table(const std::string& path) {
+  const std::string bridge = library_path("libinextensible_python.so");
+  if (bridge.empty())
+    throw std::runtime_error(
+        "this bench was built without Python; build it again after apt-get install pybind11-dev "
+        "python3-dev python3-numpy");
+  using Load = const InextensiblePlugin* (*)(const char* path, const char** error);
+  const char* error = "";
+  const InextensiblePlugin* table =
+      function_of<Load>(bridge, RTLD_GLOBAL, "inextensible_python")(path.c_str(), &error);
+  if (!table) throw std::runtime_error(error);
+  return table;
+}
+
+const InextensiblePlugin& table_of(const std::string& file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error))
+    throw std::runtime_error("there is no such file");
+  // A path without a slash would be looked for in the system's folders.
+  const std::string path = std::filesystem::absolute(file);
+  const InextensiblePlugin* table =
+      path.ends_with(".py")
+          ? python_table(path)
+          : function_of<decltype(&inextensible_plugin)>(path, RTLD_LOCAL, "inextensible_plugin")();
   if (!table) throw std::runtime_error("inextensible_plugin() returned nothing");
   if (table->abi != INEXTENSIBLE_ABI)
     throw std::runtime_error("it was built for version " + std::to_string(table->abi) +
@@ -67,10 +87,10 @@ std::vector<Struct> adopted(const Struct* first, std::int32_t count, std::uint32
 }
 
 // A crash here is not one of the program.
-void try_in_child(const std::string& path) {
+void try_in_child(const std::function<void()>& load) {
   const ChildOutcome child = run_in_child(
-      [&path](Heartbeat&) {
-        table_of(path);
+      [&load](Heartbeat&) {
+        load();
         return std::string();
       },
       {.timeout = 60, .interrupted = interrupted});
@@ -82,8 +102,25 @@ void try_in_child(const std::string& path) {
     throw std::runtime_error(ending(child) + " while it was loaded");
 }
 
+// The hash is that of the command, and of the program's file where it is one.
+Plugin add_process(const std::string& command) {
+  try_in_child([&command] { process_solver(command); });
+  const ProcessSolver solver = process_solver(command);
+  inextensible::add_backends({&solver.row, 1});
+  const std::string program = command.substr(0, command.find(' '));
+  std::error_code error;
+  const bool is_file = std::filesystem::is_regular_file(program, error);
+  return {std::filesystem::path(program).filename().string(),
+          solver.version,
+          fnv1a(command + (is_file ? read_file(program, "plug-in") : "")),
+          {solver.row.name},
+          true};
+}
+
 Plugin add(const std::string& path) {
-  try_in_child(path);
+  constexpr std::string_view command_prefix = "cmd:";
+  if (path.starts_with(command_prefix)) return add_process(path.substr(command_prefix.size()));
+  try_in_child([&path] { table_of(path); });
   std::fenv_t numbers;
   std::fegetenv(&numbers);
   const std::string locale = std::setlocale(LC_ALL, nullptr);

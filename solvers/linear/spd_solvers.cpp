@@ -1,6 +1,4 @@
-#include <stdexcept>
-#include <string>
-
+// The list of SPD solvers. inextensible::core has a shorter one (core.cpp).
 #include "solvers/linear/multifrontal_cholesky.h"
 #include "solvers/linear/spd_solver.h"
 
@@ -21,15 +19,6 @@ std::unique_ptr<SpdSolver> make(SymmetricPattern pattern) {
 constexpr auto lower = SymmetricPattern::Triangle::lower;
 constexpr auto upper = SymmetricPattern::Triangle::upper;
 
-// For a problem without constraints or free vertices: not all libraries accept empty matrices.
-class NoEquations : public SpdSolver {
- public:
-  bool factor() override { return true; }
-  void solve(double* /*rhs*/) override {}
-  double factor_nonzeros() const override { return 0; }
-  double factor_flops() const override { return 0; }
-};
-
 // CHOLMOD's supernodal code transposes an upper triangle at every factorization; the up-looking
 // codes a lower one.
 constexpr SpdSolverRow table[] = {
@@ -46,27 +35,6 @@ constexpr SpdSolverRow table[] = {
 
 }  // namespace
 
-void SpdSolver::solve_coordinates(Eigen::Matrix4Xd& rhs) {
-  for (int axis = 0; axis < 3; ++axis) {
-    one_ = rhs.row(axis);
-    solve(one_.data());
-    rhs.row(axis) = one_;
-  }
-}
-
 std::span<const SpdSolverRow> spd_solvers() { return table; }
-
-const SpdSolverRow& spd_solver(std::string_view name) {
-  for (const SpdSolverRow& row : table) {
-    if (row.name == name) return row;
-  }
-  throw std::invalid_argument("no linear solver '" + std::string(name) + "'");
-}
-
-std::unique_ptr<SpdSolver> make_spd_solver(std::string_view name, SymmetricPattern pattern) {
-  const SpdSolverRow& row = spd_solver(name);
-  if (pattern.n == 0) return std::make_unique<NoEquations>();
-  return row.make(std::move(pattern));
-}
 
 }  // namespace inextensible

@@ -18,14 +18,24 @@ ln -s "$SOURCE_FOLDER/solvers" solvers
 quietly "$CC" -std=c99 -Wall -Wextra -Wpedantic -Werror -O2 -shared -fPIC -Iinstalled/include my_solver.c -o strict.so -lm
 eval "quietly $(grep -m1 '^cc -O2 -shared' "$SOURCE_FOLDER/docs/plugins.md")"
 
-CMAKE_GENERATOR=Ninja quietly cmake -S "$SOURCE_FOLDER/tests/solvers/plugin/rope" -B rope -DCMAKE_PREFIX_PATH="$PWD/installed"
-quietly cmake --build rope
-rope/rope >rope.txt || fail "the program of one's own: $(cat rope.txt)"
+# The program of solvers/README.md. With the core it needs no library beyond the compiler's.
+sed -n '/^<!-- file: cloth.cpp -->$/,/^```$/p' "$SOURCE_FOLDER/solvers/README.md" | sed '1,2d;$d' >cloth.cpp
+for library in core solvers; do
+  CMAKE_GENERATOR=Ninja quietly cmake -S "$SOURCE_FOLDER/tests/solvers/plugin/installed" -B build-$library -DCMAKE_PREFIX_PATH="$PWD/installed" \
+    -DCLOTH="$PWD/cloth.cpp" -DLIBRARY=$library
+  quietly cmake --build build-$library
+  build-$library/cloth >cloth.txt || fail "the program of one's own: $(cat cloth.txt)"
+done
+ldd build-core/cloth build-core/libshared.so | grep -Ei 'blas|lapack|cholmod|umfpack|amd|gomp' && fail "the core needs more than Eigen"
+ldd build-solvers/libshared.so | grep -q cholmod || fail "the shared library lacks CHOLMOD"
 
 # The option may stand before and after the command.
 "$bench" --plugin "$plugin" list solvers | grep -q '^  symmetric_sweeps: ' || fail "list does not show the plug-in's solver"
 "$bench" list --plugin "$plugin" solvers | grep -q '^  symmetric_sweeps: ' || fail "--plugin after the command"
 "$bench" list solvers | grep -q symmetric && fail "a solver that was not loaded"
+
+[[ ! -e $BUILD_FOLDER/libinextensible_python.so ]] ||
+  "$bench" --plugin "$SOURCE_FOLDER/contestants/python/gauss_seidel.py" list solvers | grep -q numpy_gauss || fail "an installed bench without Python"
 
 tiny() {
   "$bench" --plugin "$plugin" --sweep strain --profile pairs --scene chain --n 20 --reps 1 --filter 'strain:0.01/' "$@"
@@ -50,7 +60,8 @@ tiny --solver 'symmetric_sweeps|gauss_seidel' --out figures/out.json >sweep.txt 
 grep -q 'could not be drawn' sweep.txt && fail "no figures: $(cat sweep.txt)"
 ls figures/*.svg >/dev/null || fail "no figures"
 "$bench" --plugin "$plugin" report figures/out.json --out page.html >report.txt 2>&1 || fail "a page of an installed bench: $(cat report.txt)"
-[[ -n $(find installed -name LICENSE) ]] || fail "the licence is not installed"
+[[ -n $(find installed -name LICENSE) && -n $(find installed -name NOTICE) ]] || fail "the license is not installed"
+[[ $("$bench" --version) == *MIT*'GPL, version 3 or later'* ]] || fail "--version does not name the licenses"
 
 # ---- Every verb of an installed bench ----
 tiny --solver fast_projection --no-plots --out small.json >sweep.txt 2>&1 || fail "a small sweep: $(cat sweep.txt)"
@@ -73,6 +84,8 @@ use() {
     compare) words=(small.json small.json) ;;
     baseline) words=(small.json --out baseline.json) ;;
     ab) words=("$bench" "$bench" --scene chain --solver fast_projection --filter 'strain:0.01/' --pairs 4 --sample-seconds 0.001) ;;
+    export) words=(--scene chain --out exported) ;;
+    judge) words=(exported exported/reference.npz) ;;
     tune) words=(--scene chain --solver icd --out tuned.json) ;;  # there already
     reference) words=(--profile pairs --scene chain) ;;           # there already
   esac
