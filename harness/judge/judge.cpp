@@ -59,10 +59,6 @@ void Judge::compare(const State& state) {
                                      reference.gap_max[next_]});
     moved_squares_ += std::pow(rms_distance(scene_, x, scene_.start.x), 2);
     reference_moved_squares_ += std::pow(rms_distance(scene_, there, scene_.start.x), 2);
-    if (next_ + 1 == reference.positions.size() && !reference.rest_gap.empty()) {
-      running_.rest_gap = reference.rest_gap;
-      running_.rest = rest_difference(scene_, x, there);
-    }
   }
 }
 

@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
-#include <utility>
+#include <vector>
 
 #include "solvers/problem/forces.h"
 
@@ -17,35 +16,6 @@ using inextensible::Problem;
 using inextensible::State;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-// The vertices along the hem (sides of one triangle only), in order. Empty: it is not one loop.
-std::vector<int> hem_of(const Scene& scene) {
-  std::set<std::pair<int, int>> open;  // sides of one triangle so far
-  for (const auto& corners : scene.triangles) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int a = corners[k], b = corners[(k + 1) % 3];
-      const std::pair side{std::min(a, b), std::max(a, b)};
-      if (open.erase(side) == 0) open.insert(side);
-    }
-  }
-  std::map<int, std::vector<int>> beside;
-  for (const auto& [a, b] : open) {
-    beside[a].push_back(b);
-    beside[b].push_back(a);
-  }
-  std::vector<int> hem;
-  if (beside.empty()) return hem;
-  int before = -1, at = beside.begin()->first;
-  do {
-    const std::vector<int>& both = beside[at];
-    if (both.size() != 2) return {};
-    hem.push_back(at);
-    const int after = both[0] == before ? both[1] : both[0];
-    before = at;
-    at = after;
-  } while (at != hem.front() && hem.size() < beside.size());
-  return hem.size() == beside.size() ? hem : std::vector<int>();
-}
 
 }  // namespace
 
@@ -132,48 +102,6 @@ double shadow_area(const Scene& scene, const Positions& x, double reach, int pix
   }
   const auto count = std::count(dark.begin(), dark.end(), 1);
   return static_cast<double>(count) * pixel * pixel;
-}
-
-int count_folds(const Scene& scene, const Positions& x) {
-  constexpr double least = 0.02;
-  std::vector<int> hem = hem_of(scene);
-  if (hem.empty()) return 0;
-  const auto lower = [&](int a, int b) { return x(1, a) < x(1, b); };
-  std::rotate(hem.begin(), std::min_element(hem.begin(), hem.end(), lower), hem.end());
-  hem.push_back(hem.front());
-  // From the lowest vertex, a fold is a rise above the last valley and a fall below the last crest.
-  int folds = 0;
-  bool rising = true;
-  double valley = x(1, hem.front()), crest = valley;
-  for (const int vertex : hem) {
-    const double y = x(1, vertex);
-    crest = std::max(crest, y);
-    valley = std::min(valley, y);
-    if (rising ? crest - y < least * scene.size : y - valley < least * scene.size) continue;
-    folds += rising ? 1 : 0;
-    rising = !rising;
-    (rising ? crest : valley) = y;
-  }
-  return folds;
-}
-
-Shape shape_of(const Scene& scene, const Positions& x) {
-  const double size = scene.size;
-  const double reach = 0.75 * size;  // a square cloth of side 1 reaches 0.71 from its middle
-  double corner_height = 0;
-  for (const int corner : scene.corners)
-    corner_height += x(1, corner) / size / static_cast<double>(scene.corners.size());
-  return {
-      {"potential_energy", inextensible::potential_energy(*scene.problem, x) / energy_scale(scene)},
-      {"corner_height", corner_height},
-      {"shadow", shadow_area(scene, x, reach, 512) / (size * size)},
-      {"folds", count_folds(scene, x)}};
-}
-
-Shape rest_difference(const Scene& scene, const Positions& x, const Positions& y) {
-  Shape difference = shape_of(scene, x);
-  for (const auto& [name, value] : shape_of(scene, y)) difference[name] -= value;
-  return difference;
 }
 
 }  // namespace harness

@@ -2,8 +2,6 @@
 // energy and shape are computed for the judge, the hard cases and `bench check`.
 #pragma once
 
-#include <map>
-#include <string>
 #include <vector>
 
 #include "harness/scenes/scene.h"
@@ -41,21 +39,7 @@ double energy_scale(const Scene& scene);
 // The larger of both; a figure that is not yet known (NaN) becomes the value.
 void raise(double& figure, double value);
 
-// ---- The shape of a cloth at rest ----
-
 // m^2, of the shadow on a horizontal plane within `reach` (m) of the y axis, on pixels x pixels.
 double shadow_area(const Scene& scene, const inextensible::Positions& x, double reach, int pixels);
-
-// How often the hem rises and falls by 2 % of the size or more on one way round. 0: no single hem.
-int count_folds(const Scene& scene, const inextensible::Positions& x);
-
-// Potential energy over weight times size, mean height of the corners over size, area of the shadow
-// on a horizontal plane over size^2, and folds.
-using Shape = std::map<std::string, double>;
-Shape shape_of(const Scene& scene, const inextensible::Positions& x);
-
-// What a cloth at rest is judged by: x's shape minus y's.
-Shape rest_difference(const Scene& scene, const inextensible::Positions& x,
-                      const inextensible::Positions& y);
 
 }  // namespace harness

@@ -28,12 +28,9 @@ constexpr auto reference_fields = std::tuple{
     field("gap", &Reference::gap, "size", "uncertainty at each time"),
     field("gap_max", &Reference::gap_max, "size", "the same in the maximum norm"),
     field("gap_parts", &Reference::gap_parts, "size", "whose largest is the gap", may_be_absent),
-    field("rest_gap", &Reference::rest_gap, "", "uncertainty of the shape at the end",
-          may_be_absent),
     field("valid_until", &Reference::valid_until, "s", "last time of a gap below 1 %"),
     field("energy_drift", &Reference::energy_drift, "weight times size", "of the first route"),
-    field("observed_order", &Reference::observed_order, "", "under step halving", may_be_absent),
-    field("expected_order", &Reference::expected_order, "", "by theory")};
+    field("observed_order", &Reference::observed_order, "", "under step halving", may_be_absent)};
 
 // Why a reference fits no scene of this program; "": it fits one.
 std::string mismatch(const Reference& r) {

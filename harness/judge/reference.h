@@ -29,14 +29,11 @@ struct Reference {
   std::vector<double> gap_max;  // the same in the maximum norm
   // The parts whose largest is the gap; empty in references made without them.
   std::map<std::string, std::vector<double>> gap_parts;
-  // By how much the routes' shapes differ at the end (rest_difference); empty: it is not known.
-  std::map<std::string, double> rest_gap;
   double valid_until = 0;   // s: the last sample before the gap exceeds 1 % of the scene's size
   double energy_drift = 0;  // of the first route, where the scene conserves energy
-  // Order of the stepping route under step halving, and theory's for smooth motion. They explain a
-  // reference and decide nothing: kinks of contact lower an order and leave paths close.
+  // Of the stepping route under step halving. It explains a reference and decides nothing: kinks of
+  // contact lower an order and leave paths close.
   double observed_order = unknown;
-  double expected_order = 1;
   bool exact = false;  // no route: the scene's motion is known
 
   double duration() const { return times.empty() ? 0 : times.back(); }

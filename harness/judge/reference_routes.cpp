@@ -136,7 +136,6 @@ class ReferenceMaker {
     r_.scene = name;
     r_.parameters = complete;
     r_.times = sample_times(scene_.duration);
-    r_.expected_order = type_->pendulum ? 2 : 1;
     if (r_.times.empty())
       throw UsageError("a reference needs a duration of at least " + number_text(sample_interval) +
                        " s");
@@ -278,12 +277,6 @@ class ReferenceMaker {
     if (second.size() < r_.times.size())
       r_.second_method += concat(
           ", until it fails after t = ", second.empty() ? 0.0 : r_.times[second.size() - 1], " s");
-    if (r_.valid_until == r_.duration() && !scene_.triangles.empty()) {
-      for (const GapPart& part : parts)
-        for (const auto& [name, value] :
-             rest_difference(scene_, part.one->back(), part.other->back()))
-          r_.rest_gap[name] = std::max(r_.rest_gap[name], std::abs(value));
-    }
     // After the gap's samples, where a route has ended, distances are the first route's alone.
     for (std::size_t i = r_.gap.size(); i < r_.times.size(); ++i) {
       const Positions& there = i < second.size() ? second[i] : half[i];

@@ -59,7 +59,6 @@ struct Measures {
   std::vector<ResidualSample> residuals;
   std::map<std::string, double> sag;
   double rest_speed = unknown;
-  std::map<std::string, double> rest, rest_gap;
 };
 
 inline constexpr FieldTraits number_or_null{.nullable = true};
@@ -137,14 +136,7 @@ inline constexpr std::tuple measure_fields{
     field("rest_speed", &Measures::rest_speed, "m/s",
           "root mean square over vertices (by mass) and the last third of the run, of scenes that "
           "mark vertices: 0 at rest",
-          number_or_null),
-    field("rest", &Measures::rest, "",
-          "of cloth that has come to rest, minus the reference's: potential energy (over weight "
-          "times size), mean height of the corners (over size), shadow (over size squared) and "
-          "number of folds along the hem",
-          error_or_null),
-    field("rest_gap", &Measures::rest_gap, "", "how far these are known of the reference",
-          error_or_null)};
+          number_or_null)};
 
 // The distance to the reference at a level: over the sample times at which 3 gap is at most the
 // level. These are the same for all runs, so that "within an error of 1 %" means one thing.

@@ -89,11 +89,6 @@ void add_stability(json& all, const json& more) {
     all[list].insert(all[list].end(), more.at(list).begin(), more.at(list).end());
   for (auto& [name, count] : all["counts"].items())
     count = count.get<long>() + more.at("counts").at(name).get<long>();
-  json& differences = all["known_differences"];
-  const json& others = more.at("known_differences");
-  for (std::size_t i = 0; i < std::min(differences.size(), others.size()); ++i) {
-    if (differences[i].at("seen").is_null()) differences[i]["seen"] = others[i].at("seen");
-  }
 }
 
 // Texts of a file as they may be printed anywhere.

@@ -47,10 +47,6 @@ int TrialJudge::before(State& state, const DriveState& driven) {
 }
 
 bool TrialJudge::after(const State& state, const DriveState& driven) {
-  if (stepper_.work().factorizations > work_.factorizations) {
-    const double condition = stepper_.reciprocal_condition();
-    if (!(condition >= result_.reciprocal_condition)) result_.reciprocal_condition = condition;
-  }
   return after(stepper_.filtered_positions(), state, driven.last) && judge_counters(driven);
 }
 

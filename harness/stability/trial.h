@@ -67,7 +67,7 @@ struct TrialResult {
   std::string detail;
   double smallest_step = unknown, max_strain = unknown;
   double strain_first_second = unknown, strain_last_second = unknown;
-  double energy_gain = unknown, momentum_defect = unknown, reciprocal_condition = unknown;
+  double energy_gain = unknown, momentum_defect = unknown;
   double seconds = 0;
   inextensible::WorkCounters work;  // of the last attempt
   Promise broken = Promise::none;   // of a wrong outcome; not in files
@@ -103,8 +103,6 @@ inline constexpr std::tuple trial_fields{
           "largest E - E_0; negative: energy was lost throughout", may_be_absent),
     field("momentum_defect", &TrialResult::momentum_defect, "",
           "largest, relative, where nothing outside acts", may_be_absent),
-    field("reciprocal_condition", &TrialResult::reciprocal_condition, "",
-          "worst of the linear systems", may_be_absent),
     field("seconds", &TrialResult::seconds, "s", "wall, both attempts")};
 
 nlohmann::json to_json(const TrialResult& result);

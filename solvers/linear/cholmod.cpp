@@ -41,7 +41,6 @@ class CholmodSolver final : public SpdSolver, CholmodAnalysis {
     cholmod_solve2(CHOLMOD_A, l, &rhs_, nullptr, &solution_, nullptr, &y_, &e_, &common);
     std::copy_n(static_cast<const double*>(solution_->x), pattern_.n, rhs);
   }
-  double reciprocal_condition() const override { return cholmod_rcond(l, &common); }
   double factor_nonzeros() const override { return common.lnz; }
   double factor_flops() const override { return common.fl; }
 

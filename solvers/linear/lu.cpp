@@ -61,7 +61,6 @@ class UmfpackSolver final : public DirectSolver {
     std::copy(solution_.begin(), solution_.end(), rhs);
   }
 
-  double reciprocal_condition() const override { return info_[UMFPACK_RCOND]; }
   double factor_nonzeros() const override { return info_[UMFPACK_LNZ] + info_[UMFPACK_UNZ]; }
   double factor_flops() const override { return info_[UMFPACK_FLOPS]; }
 
@@ -103,9 +102,6 @@ class TridiagonalLuSolver final : public DirectSolver {
             pivot_.data(), rhs, &n_, &info);
   }
 
-  double reciprocal_condition() const override {
-    return diagonal_.cwiseAbs().minCoeff() / diagonal_.cwiseAbs().maxCoeff();
-  }
   double factor_nonzeros() const override { return 5.0 * n_; }
   double factor_flops() const override { return 8.0 * n_; }
 

@@ -553,12 +553,6 @@ void MultifrontalCholesky<Real>::substitute(Real* rhs) {
 }
 
 template <class Real>
-double MultifrontalCholesky<Real>::reciprocal_condition() const {
-  const auto [low, high] = std::minmax_element(pivots_.begin(), pivots_.end());
-  return double{*low} / double{*high};
-}
-
-template <class Real>
 double MultifrontalCholesky<Real>::least_relative_pivot() const {
   double least = 1;
   for (int i = 0; i < pattern_.n; ++i) {

@@ -34,12 +34,11 @@ class MultifrontalCholesky final : public SpdSolver {
   bool factor() override;
   void solve(double* rhs) override;
   void solve_coordinates(Eigen::Matrix4Xd& rhs) override;
-  double reciprocal_condition() const override;
   // Those of L itself; a third more is stored, for whole groups of rows and merged supernodes.
   double factor_nonzeros() const override { return nonzeros_; }
   double factor_flops() const override { return flops_; }
-  // From the last successful factorization: the smallest pivot over its diagonal entry. Unlike
-  // reciprocal_condition() it does not see how rows are scaled, as the solve's accuracy does not.
+  // From the last successful factorization: the smallest pivot over its diagonal entry. How rows
+  // are scaled does not show in it, nor in the solve's accuracy.
   double least_relative_pivot() const;
 
  private:
@@ -94,9 +93,6 @@ class MixedCholesky final : public SpdSolver {
   // Without a look at the residual where the pivots promise more than `tolerance`. In double
   // precision if refinement does not get there; false if the matrix is not positive definite then.
   bool solve_within(double tolerance, double* rhs) override;
-  double reciprocal_condition() const override {
-    return in_double_ ? double_.reciprocal_condition() : single_.reciprocal_condition();
-  }
   double factor_nonzeros() const override { return single_.factor_nonzeros(); }
   double factor_flops() const override { return single_.factor_flops(); }
 

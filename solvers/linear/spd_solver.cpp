@@ -11,7 +11,6 @@ class NoEquations : public SpdSolver {
  public:
   bool factor() override { return true; }
   void solve(double* /*rhs*/) override {}
-  double reciprocal_condition() const override { return 1; }
   double factor_nonzeros() const override { return 0; }
   double factor_flops() const override { return 0; }
 };

@@ -21,8 +21,6 @@ class DirectSolver {
   virtual double* values() { return values_.data(); }  // in the pattern's order
   virtual bool factor() = 0;            // false: singular to working precision, or not finite
   virtual void solve(double* rhs) = 0;  // overwritten by the solution; after a successful factor()
-  // An estimate, of the last successful factorization: smallest over largest pivot.
-  virtual double reciprocal_condition() const = 0;
   virtual double factor_nonzeros() const = 0;  // of all factors
   virtual double factor_flops() const = 0;     // of one factorization
 

@@ -91,11 +91,6 @@ class TridiagonalSolver final : public SpdSolver {
     }
   }
 
-  double reciprocal_condition() const override {
-    const auto [low, high] = std::minmax_element(inverse_d_.begin(), inverse_d_.end());
-    return *low / *high;
-  }
-
   double factor_nonzeros() const override { return 2.0 * static_cast<double>(n_) - 1; }
   double factor_flops() const override { return 3.0 * static_cast<double>(n_); }
 
@@ -251,15 +246,6 @@ class BlockTridiagonalSolver final : public SpdSolver {
       substitute(--i, above);
       substitute(++j, below);
     }
-  }
-
-  double reciprocal_condition() const override {
-    double low = rows_[0].i0, high = low;
-    for (const Row& row : rows_) {
-      low = std::min({low, row.i0, row.i1, row.i2});
-      high = std::max({high, row.i0, row.i1, row.i2});
-    }
-    return low / high;
   }
 
   double factor_nonzeros() const override { return static_cast<double>(values_.size()); }

@@ -78,7 +78,6 @@ class Admm final : public VelocityFilter {
   }
 
   const char* linear_solver() const override { return matrix_.linear_solver.c_str(); }
-  double reciprocal_condition() const override { return matrix_.solver->reciprocal_condition(); }
 
  private:
   // M + D^T r D, once.

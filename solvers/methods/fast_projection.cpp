@@ -103,7 +103,6 @@ class FastProjection final : public VelocityFilter {
   }
 
   const char* linear_solver() const override { return system_.solver_name().c_str(); }
-  double reciprocal_condition() const override { return system_.reciprocal_condition(); }
 
  private:
   // C~(x) for this target to mu_, the gradient of C to u_; that of the middle of the step makes of

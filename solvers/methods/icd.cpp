@@ -167,7 +167,6 @@ class Icd final : public VelocityFilter {
   }
 
   const char* linear_solver() const override { return linear_solver_.c_str(); }
-  double reciprocal_condition() const override { return kkt_->reciprocal_condition(); }
 
  private:
   // u_, c_, f_, largest_f_ and merit_ at x0 + dx (in trial_) with multipliers trial_mu_.

@@ -41,9 +41,6 @@ class ImplicitSprings final : public Stepper {
     if (problem().contact_inside()) released_.resize(problem().vertices());
   }
   const char* linear_solver() const override { return energy_.matrix().linear_solver.c_str(); }
-  double reciprocal_condition() const override {
-    return energy_.matrix().solver->reciprocal_condition();
-  }
 
  private:
   StepResult solve(const State& state, double h, Positions& x) override {

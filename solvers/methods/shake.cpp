@@ -119,7 +119,6 @@ class Shake final : public VelocityFilter {
   }
 
   const char* linear_solver() const override { return system_.solver_name().c_str(); }
-  double reciprocal_condition() const override { return system_.reciprocal_condition(); }
 
  private:
   // Which matrix stands in (7): that of the start of the step; the true one, J(x_j) W J(x^n)^T, of
@@ -195,7 +194,6 @@ class Rattle final : public Stepper {
     if (problem_->implicit_forces()) implicit_ = std::make_unique<ImplicitForces>(*problem_);
   }
   const char* linear_solver() const override { return shake_.linear_solver(); }
-  double reciprocal_condition() const override { return shake_.reciprocal_condition(); }
 
  private:
   StepResult solve(const State& state, double h, Positions& x) override {

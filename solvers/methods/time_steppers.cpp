@@ -87,7 +87,6 @@ class Bdf2OfEuler final : public Stepper {
 
   const Positions& filtered_positions() const override { return euler_->filtered_positions(); }
   const char* linear_solver() const override { return euler_->linear_solver(); }
-  double reciprocal_condition() const override { return euler_->reciprocal_condition(); }
 
  private:
   StepResult solve(const State& state, double h, Positions& x) override {

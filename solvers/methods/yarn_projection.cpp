@@ -222,9 +222,6 @@ class YarnProjection final : public VelocityFilter {
   const char* linear_solver() const override {
     return whole_ ? whole_->system().solver_name().c_str() : "";
   }
-  double reciprocal_condition() const override {
-    return whole_ ? whole_->system().reciprocal_condition() : 1;
-  }
 
  private:
   StrainPasses::Passed round(WorkCounters& work) {

@@ -58,9 +58,6 @@ class Stepper {
   void measure_phases(bool wanted);
   // The linear solver in use, "" for methods without one.
   virtual const char* linear_solver() const { return ""; }
-  // Estimate for the last linear system factored, from its pivots; 1 for methods without
-  // one. Meaningful after a step that counted a factorization and did not end `singular`.
-  virtual double reciprocal_condition() const { return 1; }
   // From the next step on; null: none. Methods that show no iterates do nothing. The observer
   // outlives the stepper, or is unregistered first.
   virtual void observe(IterateObserver* /*observer*/) {}

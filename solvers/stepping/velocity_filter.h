@@ -27,7 +27,6 @@ class VelocityFilter {
   virtual StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) = 0;
 
   virtual const char* linear_solver() const { return ""; }
-  virtual double reciprocal_condition() const { return 1; }  // as the stepper's
   void observe(IterateObserver* observer) { observer_ = observer; }
 
  protected:
@@ -45,7 +44,6 @@ class FilterStepper : public Stepper {
  public:
   FilterStepper(std::shared_ptr<const Problem> problem, std::unique_ptr<VelocityFilter> filter);
   const char* linear_solver() const override { return filter_->linear_solver(); }
-  double reciprocal_condition() const override { return filter_->reciprocal_condition(); }
   void observe(IterateObserver* observer) override { filter_->observe(observer); }
 
  protected:

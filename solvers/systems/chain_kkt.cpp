@@ -16,7 +16,6 @@
 // the null space of J, if and only if A across g is positive definite in every block.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "solvers/systems/kkt_system.h"
@@ -99,9 +98,7 @@ struct ChainBlock {
   Vector g, s, a;     // a = A s
   Symmetric inverse;  // S; at the end of a chain that of A
   double curvature = 0;
-  // Magnitudes of the pivots, and how many are negative.
-  double smallest = 1, largest = 1;
-  int negative = 0;
+  int negative = 0;  // pivots
 
   // The block of an edge; false: it is not regular.
   bool pivot(const Symmetric& matrix) {
@@ -123,8 +120,6 @@ struct ChainBlock {
     add_diagonal(inverse, trace / determinant);
     add_product(inverse, -trace / determinant, n, n);
     add_scaled(inverse, -1 / determinant, across);
-    largest = std::sqrt(norm);
-    smallest = std::abs(determinant) / largest;
     negative = 1 + (determinant < 0 ? 1 : trace < 0 ? 2 : 0);                // 1: the multiplier's
     return squared > 0 && std::abs(determinant) > least_determinant * norm;  // false on NaN
   }
@@ -143,8 +138,8 @@ struct ChainBlock {
     // Jacobi's rule: as often as the leading minors change their sign.
     negative =
         (m.xx < 0 ? 1 : 0) + (m.xx * leading < 0 ? 1 : 0) + (leading * determinant < 0 ? 1 : 0);
-    largest = std::abs(m.xx) + std::abs(m.yy) + std::abs(m.zz);
-    smallest = std::abs(determinant) / (largest * largest);
+    const double largest = std::abs(m.xx) + std::abs(m.yy) + std::abs(m.zz),
+                 smallest = std::abs(determinant) / (largest * largest);
     return m.xx != 0 && leading != 0 && smallest > least_determinant * largest;
   }
 
@@ -210,8 +205,6 @@ class ChainKkt final : public KktSolver {
 
   bool eliminate() {
     negative_pivots_ = 0;
-    smallest_pivot_ = std::numeric_limits<double>::infinity();
-    largest_pivot_ = 0;
     Symmetric here;  // A_i but for its mass and the edge to the next vertex
     for (std::size_t i = 0; i < links_.size(); ++i) {
       const Link& link = links_[i];
@@ -228,8 +221,6 @@ class ChainKkt final : public KktSolver {
       }
       if (!regular) return false;
       negative_pivots_ += block.negative;
-      smallest_pivot_ = std::min(smallest_pivot_, block.smallest);
-      largest_pivot_ = std::max(largest_pivot_, block.largest);
       here = {};
       if (!link.next_free) continue;
       add_diagonal(here, block.curvature);
@@ -254,7 +245,6 @@ class ChainKkt final : public KktSolver {
   std::unique_ptr<KktSolver> make_other() const override {
     return make_kkt_system(problem_, edges_, FactoredBy::umfpack);
   }
-  double own_reciprocal_condition() const override { return smallest_pivot_ / largest_pivot_; }
 
   void substitute(Positions& p, Eigen::VectorXd& q) const {
     const auto right = [&](const Link& link) { return link.edge < 0 ? 0.0 : q[link.edge]; };
@@ -336,7 +326,6 @@ class ChainKkt final : public KktSolver {
   std::vector<Link> links_;
   std::vector<ChainBlock> blocks_;  // the factor, one a link
   int negative_pivots_ = 0;
-  double smallest_pivot_ = 1, largest_pivot_ = 1;
   Eigen::VectorXd curvature_;  // of each edge in H
   Positions r_, correction_p_;
   Eigen::VectorXd c_, correction_q_;

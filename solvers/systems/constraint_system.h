@@ -30,7 +30,6 @@ class ConstraintSystem {
   // the diagonal. A chain's may grow with its length squared.
   static constexpr double largest_growth = 1e8;
 
-  double reciprocal_condition() const { return solver_->reciprocal_condition(); }
   const std::string& solver_name() const { return solver_name_; }
   // Whether J W J^T is tridiagonal: a projection costs no more than some passes over edges.
   bool chain() const { return chain_; }

@@ -38,10 +38,6 @@ class QuasiDefiniteSolver : Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, E
   }
   // From the last factorization: the matrix's negative eigenvalues (Sylvester's law of inertia).
   int negative_pivots() const { return static_cast<int>((m_diag.array() < 0).count()); }
-  double reciprocal_condition() const {  // smallest over largest pivot
-    const auto pivots = m_diag.array().abs();
-    return pivots.minCoeff() / pivots.maxCoeff();
-  }
   double factor_nonzeros() const { return (m_nonZerosPerCol.array().cast<double>() + 1).sum(); }
   double factor_flops() const {
     return (m_nonZerosPerCol.array().cast<double>() + 1).square().sum();
@@ -220,10 +216,6 @@ class KktSystem final : public KktSolver {
     return true;
   }
 
-  double own_reciprocal_condition() const override {
-    return using_umfpack_ ? lu_->reciprocal_condition() : ldlt_->reciprocal_condition();
-  }
-
   bool umfpack_only_;
   bool using_umfpack_ = false;
   std::vector<int> vertex_unknown_;  // first of a vertex's three unknowns, -1 if pinned
@@ -275,10 +267,6 @@ bool KktSolver::leave_to_other(WorkCounters& work) {
   const bool factored = other_->factor(*u_, *mu_, nullptr, convex_, work);
   convexified_ = other_->convexified();
   return factored;
-}
-
-double KktSolver::reciprocal_condition() const {
-  return left_to_other_ ? other_->reciprocal_condition() : own_reciprocal_condition();
 }
 
 }  // namespace inextensible

@@ -38,9 +38,6 @@ class KktSolver {
   bool solve(const Positions& r, const Eigen::VectorXd& c, Positions& p, Eigen::VectorXd& q,
              WorkCounters& work);
 
-  // Estimate for the last factorization, from its pivots.
-  double reciprocal_condition() const;
-
   double mean_mass() const { return mean_mass_; }
 
  protected:
@@ -66,7 +63,6 @@ class KktSolver {
   virtual bool factor_itself(WorkCounters& work) = 0;
   virtual bool solve_itself(const Positions& r, const Eigen::VectorXd& c, Positions& p,
                             Eigen::VectorXd& q, WorkCounters& work) = 0;
-  virtual double own_reciprocal_condition() const = 0;
   virtual std::unique_ptr<KktSolver> make_other() const { return nullptr; }
   bool leave_to_other(WorkCounters& work);
 

@@ -75,7 +75,6 @@ class ProjectedCg final : public KktSolver {
   std::unique_ptr<KktSolver> make_other() const override {
     return make_kkt_system(problem_, edges_);
   }
-  double own_reciprocal_condition() const override { return solver_->reciprocal_condition(); }
 
   // r -= J^T q.
   void subtract_gradients(const Eigen::VectorXd& q, Positions& r) const {

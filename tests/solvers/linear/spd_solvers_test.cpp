@@ -128,8 +128,6 @@ TEST_P(SpdSolvers, SolveToTheToleranceAskedForWhateverTheMagnitude) {
     for (int round = 0; round < 2; ++round) {  // the same pattern, other values
       system.dense.diagonal().array() += 0.1 * round;
       ASSERT_TRUE(system.factor_shifted(0));
-      EXPECT_GT(system.solver->reciprocal_condition(), 0);
-      EXPECT_LE(system.solver->reciprocal_condition(), 1);
       EXPECT_GE(system.solver->factor_nonzeros(), static_cast<double>(system.pattern.n));
       for (const double tolerance : {1e-1, 1e-4, 1e-10, SpdSolver::tightest}) {
         const double size = tolerance == 1e-10 ? 1e60 : 1;
@@ -207,12 +205,7 @@ TEST_P(SpdSolvers, RefusePivotsThatLostTheirDigitsWhereToldTo) {
         system.solver->set_least_pivot(least);
         return std::move(system.solver);
       };
-      const auto weak = solver(1e-6, 1e-10);
-      EXPECT_TRUE(weak->factor());
-      EXPECT_LT(weak->reciprocal_condition(), 1e-5);
-      if (rows == 2) {
-        EXPECT_NEAR(weak->reciprocal_condition(), 1e-6, 1e-9);
-      }
+      EXPECT_TRUE(solver(1e-6, 1e-10)->factor());
       EXPECT_TRUE(solver(1e-12, 0)->factor());
       EXPECT_FALSE(solver(1e-12, 1e-10)->factor());
       EXPECT_FALSE(solver(0, 1e-10)->factor());
