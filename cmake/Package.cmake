@@ -10,9 +10,3 @@ install(FILES
   ${PROJECT_SOURCE_DIR}/cmake/FindOpenBLAS.cmake
   ${PROJECT_SOURCE_DIR}/cmake/FindSuiteSparse.cmake
   DESTINATION ${package_dir})
-
-# The same from the build folder, for contestants/, which need no installation then.
-export(EXPORT inextensible NAMESPACE inextensible:: FILE ${PROJECT_BINARY_DIR}/inextensible-targets.cmake)
-foreach(file IN ITEMS inextensible-config.cmake FindOpenBLAS.cmake FindSuiteSparse.cmake)
-  configure_file(${PROJECT_SOURCE_DIR}/cmake/${file} ${PROJECT_BINARY_DIR}/${file} COPYONLY)
-endforeach()

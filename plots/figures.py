@@ -32,7 +32,6 @@ from parts.style import RC
 FIGURES = [import_module(f"drawings.{name}") for name in (
     "cost",            # Figures 4 and 5 of the paper, and growth
     "plane",           # who is fastest within a strain limit and an error
-    "budget",          # which strain a method reaches within a frame's time
     "work_precision",
     "residual",        # Figure 3
     "hard_cases",      # of a stability sweep

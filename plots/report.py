@@ -30,7 +30,7 @@ from parts.result import Json, Result, seconds_of
 from parts.style import RC
 
 PAGE = Path(__file__).parent / "page"
-SCRIPTS = ("document.js", "contest.js", "table.js")
+SCRIPTS = ("document.js", "table.js")
 FIRST = ("drape", "strain")  # the question that most readers come with
 
 
@@ -136,8 +136,7 @@ def page(results: dict[Path, Result], found: list[Json], claims: list[Json]) -> 
     verdicts = [[claim[key] for key in ("id", "statement", "verdict", "measured", "rule")] for claim in claims]
     parts = [(name, title, body) for name, title, body in (
         ("findings", "Findings", findings(found)),
-        ("contest", "Who is fastest", file("contest.html") if data["points"] else ""),
-        ("points", "All points", file("table.html") if data["points"] else ""),
+        ("points", "Who is fastest", file("table.html") if data["points"] else ""),
         ("figures", "Figures", pictures),
         ("claims", "The paper's claims", table(("Claim", "Says", "Verdict", "Measured", "Rule"), verdicts) if claims else ""),
         ("machine", "Machine and build", table(("File", "Date", "Processor", "Cores", "Commit", "Compiler", "Flags"), machines)),

@@ -36,12 +36,7 @@ class Object {
         settings_.push_back(options.number(setting.name));
       }
     }
-    if (options.start) {
-      arrays_.scene.x = options.start->x.data();
-      arrays_.scene.v = options.start->v.data();
-    }
     make();
-    arrays_.scene.x = arrays_.scene.v = nullptr;
   }
   Object(const Object&) = delete;
   Object& operator=(const Object&) = delete;
@@ -256,6 +251,10 @@ SceneArrays::SceneArrays(const Problem& problem, const BackendOptions& options, 
   }
   if (problem.collider()) add_body(problem);
   scene.along_middle = along == Along::middle;
+  if (!options.start) return;
+  start = *options.start;
+  scene.x = start.x.data();
+  scene.v = start.v.data();
 }
 
 void SceneArrays::add_body(const Problem& problem) {

@@ -17,16 +17,14 @@ inline Eigen::Map<const Eigen::Matrix3Xd> columns(const double* vectors, Eigen::
   return {vectors, 3, count};
 }
 
-// Base of engines; each has a constructor from scene and settings, which throws std::exception for
-// a scene that it does not take, and
-//   int put_in(InextensibleStep&)    the state at the start of the step
-//   int step(InextensibleStep&)
-//   void take_out(InextensibleStep&)  the state at its end
-struct Engine {
-  void accept() {}  // after a step that was not refused
-  void build() {}   // anew, after an exception, when the engine's state cannot be trusted
+// Thrown out of a step that is refused. After any other exception bench makes the engine anew.
+struct Refusal {
+  InextensibleResult result;
+  const char* reason;  // a literal
 };
 
+// E has a constructor from scene and settings, which throws std::exception for a scene that it does
+// not take, and put_in (the state at the start of the step), step, and take_out (that at its end).
 template <class E>
 void* create(const InextensibleScene* scene, const double* settings, const char** reason) {
   static std::string why;
@@ -40,39 +38,31 @@ void* create(const InextensibleScene* scene, const double* settings, const char*
 }
 
 template <class E>
-int take_step(void* object, InextensibleStep* step) {
+int take_step(void* object, InextensibleStep* step) try {
   E& engine = *static_cast<E*>(object);
   using Clock = std::chrono::steady_clock;
-  auto seconds = [last = Clock::now()]() mutable {
-    const auto before = last;
-    last = Clock::now();
-    return std::chrono::duration<double>(last - before).count();
-  };
-  try {
-    if (const int refused = engine.put_in(*step)) return refused;
-    step->copy_seconds += seconds();
-    if (const int refused = engine.step(*step)) return refused;
-    seconds();
-    engine.take_out(*step);
-    step->copy_seconds += seconds();
-  } catch (const std::exception&) {
-    engine.build();
-    step->reason = "the engine gave up";
-    return INEXTENSIBLE_NOT_CONVERGED;
-  }
-  const Eigen::Index n = engine.vertices;
-  if (!std::isfinite(columns(step->x, n).sum() + columns(step->v, n).sum())) {
-    step->reason = "a number overflowed";
-    return INEXTENSIBLE_NOT_FINITE;
-  }
-  engine.accept();
+  const auto begin = Clock::now();
+  engine.put_in(*step);
+  const auto is_in = Clock::now();
+  engine.step(*step);
+  const auto stepped = Clock::now();
+  engine.take_out(*step);
+  const std::chrono::duration<double> copying = is_in - begin + (Clock::now() - stepped);
+  step->copy_seconds = copying.count();
   return INEXTENSIBLE_OK;
+} catch (const Refusal& refusal) {
+  step->reason = refusal.reason;
+  return refusal.result;
 }
 
 template <class E>
 void destroy(void* object) {
   delete static_cast<E*>(object);
 }
+
+// Of engines with vertices and links, to which bench gives all other forces.
+constexpr int takes_forces = INEXTENSIBLE_TAKES_SHEAR | INEXTENSIBLE_TAKES_BENDING |
+                             INEXTENSIBLE_TAKES_DRAG | INEXTENSIBLE_WANTS_FORCES;
 
 // The plug-in of one engine. The version names the engine; `kind` and `label` are what follows it
 // in the summary and in figures.

@@ -19,20 +19,18 @@ int only_pin(const InextensibleScene& scene) {
   return static_cast<int>(std::find(scene.mass, end, 0.0) - scene.mass);
 }
 
-// Duff et al. 2017, Building an orthonormal basis, revisited: continuous but at e.z = 0.
-Eigen::Matrix3d axes_along(const Eigen::Vector3d& e) {
-  const double sign = std::copysign(1.0, e.z()), a = -1 / (sign + e.z()), b = e.x() * e.y() * a;
-  Eigen::Matrix3d axes;
-  axes.col(0) = e;
-  axes.col(1) << 1 + sign * e.x() * e.x() * a, sign * b, -sign * e.x();
-  axes.col(2) << b, sign + e.y() * e.y() * a, -e.y();
-  return axes;
+// Whether a state is in a plane of x and y.
+bool planar(const double* x, const double* v, int count) {
+  const auto heights = columns(x, count).row(2), speeds = columns(v, count).row(2);
+  return (heights.array() == heights(0)).all() && (speeds.array() == 0).all();
 }
 
-Eigen::Matrix3d axes_in_plane(const Eigen::Vector3d& e) {
-  Eigen::Matrix3d axes;
-  axes << e.x(), -e.y(), 0, e.y(), e.x(), 0, 0, 0, 1;
-  return axes;
+// The smallest rotation that takes the x axis to e, one about z as long as e.z = 0.
+Eigen::Quaterniond turn_to(const Eigen::Vector3d& e) {
+  const double across = std::hypot(e.y(), e.z());
+  const Eigen::Vector3d axis(0, -e.z() / across, e.y() / across);
+  const double angle = std::atan2(across, e.x());
+  return Eigen::Quaterniond(Eigen::AngleAxisd(angle, across > 0 ? axis : Eigen::Vector3d::UnitZ()));
 }
 
 }  // namespace
@@ -59,34 +57,25 @@ Links::Links(const InextensibleScene& scene)
   }
   if (count() + 1 != scene.vertices) refuse("some vertices do not hang on the pin");
   poses.resize(vertex.size());
-  flat = scene.x && planar(scene.x, scene.v);
+  flat = scene.x && gravity.z() == 0 && planar(scene.x, scene.v, scene.vertices);
 }
 
-bool Links::planar(const double* x, const double* v) const {
-  const auto places = columns(x, count() + 1), velocities = columns(v, count() + 1);
-  return gravity.z() == 0 && (places.row(2).array() == places(2, pin)).all() &&
-         (velocities.row(2).array() == 0).all();
-}
-
-bool Links::find_poses(const double* x, const double* v) {
-  flat = flat && planar(x, v);
-  const auto places = columns(x, count() + 1), velocities = columns(v, count() + 1);
-  Eigen::Vector3d from = places.col(pin), rate_before = Eigen::Vector3d::Zero();
-  Eigen::Vector3d velocity_before = Eigen::Vector3d::Zero();
-  for (int i = 0; i < count(); ++i) {
-    Eigen::Vector3d e = places.col(vertex[i]) - from;
-    const double distance = e.norm();
-    if (!(distance > 0) || !std::isfinite(distance)) return false;
-    e /= distance;
-    poses[i].axes = flat ? axes_in_plane(e) : axes_along(e);
-    const Eigen::Vector3d across = e.cross(velocities.col(vertex[i]) - velocity_before) / length[i];
-    const Eigen::Vector3d rate = flat ? across : across + e.dot(rate_before) * e;
-    poses[i].rate = rate - rate_before;
-    from = places.col(vertex[i]);
-    velocity_before = velocities.col(vertex[i]);
-    rate_before = rate;
+void Links::find_poses(const InextensibleStep& step) {
+  flat = flat && planar(step.x, step.v, count() + 1);
+  const auto places = columns(step.x, count() + 1), velocities = columns(step.v, count() + 1);
+  Eigen::Quaterniond axes = Eigen::Quaterniond::Identity();  // of the link before, and its rate
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();
+  for (int i = 0, from = pin; i < count(); from = vertex[i++]) {
+    const Eigen::Vector3d d = places.col(vertex[i]) - places.col(from), e = d.normalized();
+    if (!(d.norm() > 0 && e.allFinite()))
+      throw Refusal{INEXTENSIBLE_NOT_FINITE, "a link has no direction"};
+    poses[i].turn = turn_to(axes.conjugate() * e);
+    axes = (axes * poses[i].turn).normalized();
+    const Eigen::Vector3d across = velocities.col(vertex[i]) - velocities.col(from);
+    const Eigen::Vector3d added = e.cross(across / length[i] - rate.cross(e));
+    poses[i].rate = axes.conjugate() * added;
+    rate += added;
   }
-  return true;
 }
 
 }  // namespace engines

@@ -2,30 +2,31 @@
 // (reduced) coordinates: one angle a link as long as the chain stays in the plane of x and y.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <vector>
 
 #include "contestants/common/engine.h"
 
 namespace engines {
 
-// Orientation and rotation of a link.
+// Orientation and rotation of a link, whose own axes are x along it and, as long as the chain is
+// in a plane, z across that.
 struct LinkPose {
-  Eigen::Matrix3d axes;  // the link's own, as columns: the first along it, the third z in a plane
-  Eigen::Vector3d rate;  // rad/s, against the link before it, without spin about itself
+  Eigen::Quaterniond turn;  // from the axes of the link before it, the world's at the pin
+  Eigen::Vector3d rate;     // rad/s, against that link, in its own axes: 0, y, z
 };
 
 // Link i ends at vertex[i], of mass[i], and begins at vertex[i - 1]; link 0 begins at the pin.
-class Links {
- public:
+struct Links {
   // Throws std::invalid_argument, saying why, for a scene that is not such a chain.
   explicit Links(const InextensibleScene& scene);
 
   int count() const { return static_cast<int>(vertex.size()); }
 
-  // Finds the pose of every link in a state. Lengths are the chain's, not the state's, so
-  // velocities along a link are lost. A state that is not planar makes the chain one in space,
-  // which it stays. False if a link has no direction.
-  bool find_poses(const double* x, const double* v);
+  // Finds the pose of every link in a state, and refuses one in which a link has no direction.
+  // Lengths are the chain's, not the state's, so velocities along a link are lost. A state that is
+  // not planar makes the chain one in space, which it stays.
+  void find_poses(const InextensibleStep& step);
 
   int pin = -1;
   std::vector<int> vertex;
@@ -33,9 +34,6 @@ class Links {
   Eigen::Vector3d gravity;
   std::vector<LinkPose> poses;
   bool flat = false;  // positions, velocities and gravity have been in the plane of x and y
-
- private:
-  bool planar(const double* x, const double* v) const;
 };
 
 }  // namespace engines

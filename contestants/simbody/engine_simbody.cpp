@@ -1,175 +1,111 @@
 // A chain of mobilizers in Simbody: joint coordinates, so that links keep their length to rounding,
 // and accelerations in O(n). A link is a body whose mass is a point at its end. It turns on a pin
-// as long as the chain stays in the plane of x and y, on a line orientation otherwise, which has
-// quaternions and no spin about the link. The integrator chooses its own steps to the
-// accuracy asked for; a step of the harness is what it must end on.
+// as long as the chain stays in the plane of x and y, on a line orientation otherwise. Runge, Kutta
+// and Merson's integrator chooses its own steps, by their accuracy, up to the end of bench's step.
 // Loops: over links, five times an internal step.
 //
 // Departure: none from Simbody. Where a step begins with what the last one ended with, bit for bit,
 // Simbody continues from its own state; otherwise it is set again, which takes another first step.
 #include <Simbody.h>
 
-#include <algorithm>
-#include <cmath>
 #include <memory>
 
 #include "contestants/common/links.h"
 
 namespace {
 
-using engines::Links;
 using SimTK::MobilizedBody, SimTK::Vec3;
-
-constexpr int most_internal_steps = 100'000;  // in one step of the harness
-
-enum Setting { accuracy, integrator };
-const char* const integrators[] = {"merson", "fehlberg", "verlet", nullptr};
 
 struct Chain {
   SimTK::MultibodySystem system;
   SimTK::SimbodyMatterSubsystem matter{system};
   SimTK::GeneralForceSubsystem forces{system};
   std::vector<MobilizedBody> bodies;
-  std::vector<Vec3> ends;  // of links, in their bodies
-  bool pins;
+  SimTK::Rotation axes;  // of joints, in links: pins turn about z, line orientations want it along
+  bool flat;
   SimTK::State start;
-  std::unique_ptr<SimTK::Integrator> stepper;
+  SimTK::RungeKuttaMersonIntegrator stepper{system};
 
-  // Line orientations need the link along z; pins turn about z.
-  Chain(const Links& links, const double* settings) : pins(links.flat) {
-    const Eigen::Vector3d& g = links.gravity;
-    const SimTK::Force::UniformGravity weight(forces, matter, Vec3(g.x(), g.y(), g.z()));
-    matter.setShowDefaultGeometry(false);
+  Chain(const engines::Links& links, double accuracy) : flat(links.flat) {
+    const SimTK::Force::UniformGravity weight(forces, matter, Vec3(links.gravity.data()));
+    if (!flat) axes.setRotationFromAngleAboutY(SimTK::Pi / 2);
     for (int i = 0; i < links.count(); ++i) {
-      const Vec3 end = pins ? Vec3(links.length[i], 0, 0) : Vec3(0, 0, links.length[i]);
+      const Vec3 end(links.length[i], 0, 0);
       const SimTK::Body::Rigid body(
           SimTK::MassProperties(links.mass[i], end, SimTK::Inertia(end, links.mass[i])));
       MobilizedBody parent = i == 0 ? matter.updGround() : bodies.back();
-      const Vec3 joint = i == 0 ? Vec3(0) : ends.back();
-      if (pins)
-        bodies.push_back(MobilizedBody::Pin(parent, joint, body, Vec3(0)));
-      else
-        bodies.push_back(MobilizedBody::LineOrientation(parent, joint, body, Vec3(0)));
-      ends.push_back(end);
+      const SimTK::Transform joint(axes, Vec3(i == 0 ? 0 : links.length[i - 1], 0, 0));
+      if (flat) bodies.push_back(MobilizedBody::Pin(parent, joint, body, axes));
+      if (!flat) bodies.push_back(MobilizedBody::LineOrientation(parent, joint, body, axes));
     }
     start = system.realizeTopology();
     system.realizeModel(start);
-    if (settings[integrator] == 0)
-      stepper = std::make_unique<SimTK::RungeKuttaMersonIntegrator>(system);
-    else if (settings[integrator] == 1)
-      stepper = std::make_unique<SimTK::RungeKuttaFeldbergIntegrator>(system);
-    else
-      stepper = std::make_unique<SimTK::VerletIntegrator>(system);
-    stepper->setAccuracy(settings[accuracy]);
-    stepper->setAllowInterpolation(false);
-    stepper->setInternalStepLimit(most_internal_steps);
+    stepper.setAccuracy(accuracy);
+    stepper.setAllowInterpolation(false);
+    stepper.setInternalStepLimit(100'000);  // in one step of bench
   }
 
   void set(const std::vector<engines::LinkPose>& poses) {
-    Eigen::Matrix3d before = Eigen::Matrix3d::Identity();
     for (std::size_t i = 0; i < poses.size(); ++i) {
-      Eigen::Matrix3d axes = poses[i].axes;
-      if (!pins) axes << poses[i].axes.col(1), poses[i].axes.col(2), poses[i].axes.col(0);
-      const Eigen::Matrix3d against = before.transpose() * axes;  // axes in the previous link's
-      const Eigen::Vector3d rate = axes.transpose() * poses[i].rate;
-      if (pins) {
-        bodies[i].setOneQ(start, 0, std::atan2(against(1, 0), against(0, 0)));
-        bodies[i].setOneU(start, 0, rate.z());
-      } else {
-        SimTK::Mat33 rows;
-        for (int r = 0; r < 3; ++r) {
-          for (int c = 0; c < 3; ++c) rows(r, c) = against(r, c);
-        }
-        bodies[i].setQToFitRotation(start, SimTK::Rotation(rows));
-        bodies[i].setOneU(start, 0, rate.x());
-        bodies[i].setOneU(start, 1, rate.y());
-      }
-      before = axes;
+      const auto& [q, rate] = poses[i];
+      const SimTK::Rotation turn(SimTK::Quaternion(q.w(), q.x(), q.y(), q.z()));
+      bodies[i].setQToFitRotation(start, ~axes * turn * axes);
+      bodies[i].setUToFitAngularVelocity(start, ~axes * (turn * Vec3(rate.data())));
     }
-    start.setTime(0);
-    stepper->initialize(start);
-  }
-
-  // Whether it arrived.
-  bool step(double h) {
-    const double end = stepper->getTime() + h;
-    if (!(end > stepper->getTime())) return false;
-    if (stepper->stepTo(end) == SimTK::Integrator::StartOfContinuousInterval)
-      return stepper->stepTo(end) == SimTK::Integrator::ReachedReportTime;
-    return stepper->getTime() == end;
+    stepper.initialize(start);
   }
 };
 
-class SimbodyChain : public engines::Engine {
+class SimbodyChain {
  public:
   SimbodyChain(const InextensibleScene& scene, const double* settings)
-      : vertices(scene.vertices), links_(scene), settings_{settings[0], settings[1]} {
-    build();
-  }
+      : links_(scene), accuracy_(settings[0]), chain_(std::make_unique<Chain>(links_, accuracy_)) {}
 
-  void build() {
-    chain_ = std::make_unique<Chain>(links_, settings_);
-    ours_.clear();
-  }
-
-  int put_in(InextensibleStep& step) {
-    const std::size_t size = 3 * static_cast<std::size_t>(vertices);
-    start_x_.assign(step.x, step.x + size);
-    if (ours_.size() == 2 * size && std::equal(step.x, step.x + size, ours_.begin()) &&
-        std::equal(step.v, step.v + size, ours_.begin() + static_cast<std::ptrdiff_t>(size)))
-      return INEXTENSIBLE_OK;  // is there already
-    ours_.clear();
-    if (!links_.find_poses(step.x, step.v)) {
-      step.reason = "a link has no direction";
-      return INEXTENSIBLE_NOT_FINITE;
-    }
-    if (chain_->pins != links_.flat) build();
+  void put_in(InextensibleStep& step) {
+    const auto x = engines::columns(step.x, links_.count() + 1);
+    const auto v = engines::columns(step.v, links_.count() + 1);
+    if (x_.size() == x.size() && x_ == x && v_ == v) return;  // is there already
+    links_.find_poses(step);
+    if (chain_->flat != links_.flat) chain_ = std::make_unique<Chain>(links_, accuracy_);
     chain_->set(links_.poses);
-    internal_steps_ = 0;
-    return INEXTENSIBLE_OK;
   }
 
-  int step(InextensibleStep& step) {
-    ours_.clear();
-    const bool arrived = chain_->step(step.h);
-    step.iterations = chain_->stepper->getNumStepsAttempted() - internal_steps_;
-    internal_steps_ = chain_->stepper->getNumStepsAttempted();
-    if (!arrived) step.reason = "Simbody took too many steps";
-    return arrived ? INEXTENSIBLE_OK : INEXTENSIBLE_NOT_CONVERGED;
+  void step(InextensibleStep& step) {
+    x_.resize(3, 0);  // the end is not known
+    SimTK::Integrator& stepper = chain_->stepper;
+    stepper.resetAllStatistics();
+    const double end = stepper.getTime() + step.h;
+    if (stepper.stepTo(end) == SimTK::Integrator::StartOfContinuousInterval) stepper.stepTo(end);
+    step.iterations = stepper.getNumStepsAttempted();
+    if (stepper.getTime() != end)
+      throw engines::Refusal{INEXTENSIBLE_NOT_CONVERGED, "Simbody took too many steps"};
   }
 
   void take_out(InextensibleStep& step) {
-    const SimTK::State& state = chain_->stepper->getState();
+    const SimTK::State& state = chain_->stepper.getState();
     chain_->system.realize(state, SimTK::Stage::Velocity);
+    auto x = engines::columns(step.x, links_.count() + 1);
+    auto v = engines::columns(step.v, links_.count() + 1);
     Vec3 place, velocity;
     for (int i = 0; i < links_.count(); ++i) {
-      chain_->bodies[i].findStationLocationAndVelocityInGround(state, chain_->ends[i], place,
-                                                               velocity);
-      for (int c = 0; c < 3; ++c) {
-        step.x[3 * links_.vertex[i] + c] = start_x_[3 * links_.pin + c] + place[c];
-        step.v[3 * links_.vertex[i] + c] = velocity[c];
-      }
+      chain_->bodies[i].findStationLocationAndVelocityInGround(state, Vec3(links_.length[i], 0, 0),
+                                                               place, velocity);
+      x.col(links_.vertex[i]) = x.col(links_.pin) + Eigen::Vector3d(&place[0]);
+      v.col(links_.vertex[i]) = Eigen::Vector3d(&velocity[0]);
     }
-    const std::size_t size = 3 * static_cast<std::size_t>(vertices);
-    ours_.assign(step.x, step.x + size);
-    ours_.insert(ours_.end(), step.v, step.v + size);
-    std::fill_n(ours_.begin() + static_cast<std::ptrdiff_t>(size) + 3 * links_.pin, 3, 0.0);
+    x_ = x;
+    v_ = v;
   }
 
-  const int vertices;
-
  private:
-  Links links_;
-  const double settings_[2];
+  engines::Links links_;
+  const double accuracy_;
   std::unique_ptr<Chain> chain_;
-  int internal_steps_ = 0;
-  std::vector<double> start_x_, ours_;  // ours: x and v that the last step ended with
+  Eigen::Matrix3Xd x_, v_;  // that the last step ended with
 };
 
 const InextensibleSetting settings[] = {
-    {"accuracy", "of the internal steps, relative", 1e-3, 1e-12, 0.5, 1e-6, 0.5, 0, nullptr},
-    {"integrator", "Runge, Kutta and Merson's, Fehlberg's, or Verlet's of order 2", 0, 0, 0, 0, 0,
-     0, integrators}};
+    {"accuracy", "of the internal steps, relative", 1e-3, 1e-12, 0.5, 1e-6, 0.5, 0, nullptr}};
 
 }  // namespace
 
@@ -177,9 +113,7 @@ const InextensiblePlugin* inextensible_plugin() {
   int major = 0, minor = 0, build = 0;
   SimTK_version_simbody(&major, &minor, &build);
   return engines::plugin_of<SimbodyChain>(
-      "engine_simbody",
-      "Simbody " + std::to_string(major) + "." + std::to_string(minor) +
-          (build ? "." + std::to_string(build) : ""),
+      "engine_simbody", "Simbody " + std::to_string(major) + "." + std::to_string(minor),
       "a chain of mobilizers (joint coordinates), Runge-Kutta-Merson", "mobilizers",
       "Sherman, Seth and Delp 2011", INEXTENSIBLE_WHOLE_STEP, INEXTENSIBLE_UNKNOWN, settings);
 }

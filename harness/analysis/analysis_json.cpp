@@ -32,9 +32,7 @@ static void to_json(json& to, const Entry& entry) {
         {"seconds", number(entry.point.seconds())},
         {"step", number(entry.point.step())},
         {"error", number(entry.error)},
-        {"delivered_strain", number(entry.point.delivered_strain())},
-        {"frame_times",
-         FieldCodec<std::vector<FrameTime>>::write(entry.point.result().frame_times, false)}};
+        {"delivered_strain", number(entry.point.delivered_strain())}};
 }
 
 static void to_json(json& to, const Cell& cell) {
@@ -72,25 +70,6 @@ static void to_json(json& to, const Plane& plane) {
         {"error_levels", plane.levels},  // any motion, which is infinite, is written as null
         {"leaders", leaders_of(plane)},
         {"cells", plane.cells}};
-}
-
-static void to_json(json& to, const Reach& reach) {
-  to = {{"id", reach.point.id()},
-        {"frame_seconds", reach.frame_seconds},
-        {"strain_limit", reach.strain_limit},
-        {"error", number(reach.error)},
-        {"right", reach.right}};
-}
-
-static void to_json(json& to, const Budgeted& row) {
-  to = {{"row", row.row}, {"stairs", row.stairs}};
-}
-
-static void to_json(json& to, const BudgetTable& table) {
-  to = {{"scene", table.scene},
-        {"resolution", table.resolution},
-        {"vertices", table.vertices},
-        {"rows", table.rows}};
 }
 
 namespace {
@@ -166,9 +145,11 @@ json curves_of(const ContestantRoles& roles, const std::vector<Plane>& planes) {
 
 json analysis_of(const Runs& runs) {
   const std::vector<Plane> planes = planes_of(runs);
-  return {{"schema", "inextensible-analysis/1"},     {"headline_error", headline_error},
-          {"findings", findings_of(planes)},         {"planes", planes},
-          {"curves", curves_of(runs.roles, planes)}, {"budgets", budget_tables(runs, {})}};
+  return {{"schema", "inextensible-analysis/1"},
+          {"headline_error", headline_error},
+          {"findings", findings_of(planes)},
+          {"planes", planes},
+          {"curves", curves_of(runs.roles, planes)}};
 }
 
 }  // namespace harness::analysis

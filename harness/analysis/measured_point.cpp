@@ -75,8 +75,9 @@ Runs::Runs(const json& document) : roles(document), levels{any_motion} {
 }
 
 std::string scene_words(const std::string& scene) {
-  if (!scene.starts_with("mesh:")) return scene;
-  const std::string file = scene.substr(5, scene.find(',') - 5);
+  const std::size_t begin = scene.find(':') + 1;  // of "mesh:" or "folder:"
+  if (begin == 0) return scene;
+  const std::string file = scene.substr(begin, scene.find(',') - begin);
   return file.substr(file.find_last_of('/') + 1);
 }
 

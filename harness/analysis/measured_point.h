@@ -103,7 +103,7 @@ auto grouped(const Items& items, Key key) {
   return groups;
 }
 
-// For a mesh its file's name: "shirt.obj" for "mesh:clothes/shirt.obj,pins=y>1.2".
+// A scene made of files goes by the last name: "shirt.obj" for "mesh:clothes/shirt.obj,pins=y>1.2".
 std::string scene_words(const std::string& scene);
 std::string percent(double fraction);    // "1.2 %"
 std::string time_words(double seconds);  // "1.23 s", "41.3 ms", "0.51 ms"

@@ -114,27 +114,22 @@ std::tuple<int, double, double> worth(const std::optional<Reach>& r) {
   return r->right ? std::tuple(0, r->strain_limit, error) : std::tuple(1, error, -r->strain_limit);
 }
 
-BudgetTable table_of(std::vector<Point> points, const ContestantRoles& roles,
+BudgetTable table_of(const std::vector<Point>& points, const ContestantRoles& roles,
                      const std::vector<double>& budgets) {
   const PointSpec& one = points.front().spec();
-  BudgetTable table{one.scene, one.resolution, one.vertices, budgets, {}};
+  BudgetTable table{one.scene, one.vertices, budgets, {}};
   const auto row_of = [&](const Point& p) { return roles.of(p.contestant()).row(); };
-  for (auto& [row, own] : grouped(points, row_of)) {
-    Budgeted line{row, {}, {}};
-    std::ranges::stable_sort(own, {}, frame_seconds);
-    for (const Point& point : own) {
-      const double error = point.error_at(headline_error).distance;
-      const Reach reach{point.spec().strain_limit, error, frame_seconds(point),
-                        error <= headline_error, point};
-      if (line.stairs.empty() || worth(reach) < worth(line.stairs.back()))
-        line.stairs.push_back(reach);
-    }
+  for (const auto& [row, own] : grouped(points, row_of)) {
+    Budgeted& line = table.rows.emplace_back(Budgeted{row, {}});
     for (const double budget : budgets) {
-      const auto beyond = std::ranges::upper_bound(line.stairs, budget, {}, &Reach::frame_seconds);
-      line.reached.push_back(beyond == line.stairs.begin() ? std::nullopt
-                                                           : std::optional(*std::prev(beyond)));
+      std::optional<Reach>& best = line.reached.emplace_back();
+      for (const Point& point : own) {
+        const double error = point.error_at(headline_error).distance;
+        const Reach reach{point.spec().strain_limit, error, frame_seconds(point),
+                          error <= headline_error, point};
+        if (reach.frame_seconds <= budget && worth(reach) < worth(best)) best = reach;
+      }
     }
-    table.rows.push_back(std::move(line));
   }
   std::ranges::stable_sort(table.rows, {}, [](const Budgeted& row) {
     std::vector<std::tuple<int, double, double>> worths;

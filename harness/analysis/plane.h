@@ -86,15 +86,14 @@ struct Reach {
 };
 
 struct Budgeted {
-  std::string row;            // an unranked contestant's is its solver's
-  std::vector<Reach> stairs;  // runs that reach more than every run with shorter frames
+  std::string row;                            // an unranked contestant's is its solver's
   std::vector<std::optional<Reach>> reached;  // one for each budget; none: no run is that fast
 };
 
 // One scene and size. Rows: tightest strain limit at the largest budget first.
 struct BudgetTable {
   std::string scene;
-  int resolution = 0, vertices = 0;
+  int vertices = 0;
   std::vector<double> budgets;  // s a frame
   std::vector<Budgeted> rows;
 };

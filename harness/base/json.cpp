@@ -1,8 +1,14 @@
+#define VALIJSON_USE_EXCEPTIONS 1  // a definition for all sources would forbid the precompiled header
 #include "harness/base/json.h"
 
 #include <cmath>
 #include <set>
 #include <tuple>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validation_results.hpp>
+#include <valijson/validator.hpp>
 #include <vector>
 
 #include "harness/base/errors.h"
@@ -31,6 +37,15 @@ std::string lines(const ordered_json& value, int depth) {
     between = "," + (end.empty() ? " " : end);
   }
   return (value.is_object() ? "{" : "[") + text + end + (value.is_object() ? "}" : "]");
+}
+
+// The keys of all objects that a schema describes.
+void add_keys(const json& rules, std::vector<std::string>& keys) {
+  for (const auto& [name, rule] : rules.items()) {
+    for (const auto& property : rule.items())
+      if (name == "properties") keys.push_back(property.key());
+    if (rule.is_structured()) add_keys(rule, keys);
+  }
 }
 
 }  // namespace
@@ -88,5 +103,39 @@ std::string value_text(const json& value) {
 std::string compact(const json& value) { return written(value); }
 
 std::string document_text(const ordered_json& document) { return lines(document, 2) + "\n"; }
+
+void check_fits(const json& document, const json& rules, const std::string& kind,
+                const std::string& path) {
+  const valijson::adapters::NlohmannJsonAdapter rules_adapter(rules), adapter(document);
+  valijson::Schema parsed;
+  valijson::SchemaParser().populateSchema(rules_adapter, parsed);
+  valijson::ValidationResults results;
+  if (valijson::Validator().validate(parsed, adapter, &results)) return;
+  // The errors come from the inside out: the first one is the place itself.
+  valijson::ValidationResults::Error error;
+  results.popError(error);
+  std::string place;
+  json::json_pointer pointer;
+  for (const std::string& step : error.context) {
+    if (step == "<root>") continue;
+    place += step;
+    pointer /= step.substr(1, step.size() - 2);  // [key] or [index]
+  }
+  const bool plain = document.contains(pointer) && document.at(pointer).is_primitive();
+  std::string what = error.description;
+  if (what.starts_with("Object contains a property")) {
+    const auto begin = what.rfind(": '") + 3;
+    const std::string key = what.substr(begin, what.rfind('\'') - begin);
+    std::vector<std::string> keys;
+    add_keys(rules, keys);
+    std::erase(keys, key);  // known elsewhere
+    const std::string near = closest(key, keys);
+    what = "unknown key '" + key + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?");
+  }
+  throw UsageError("'" + path + "' is not a " + kind + " file: at " +
+                   (place.empty() ? "its top" : shortened(place, 100)) +
+                   (plain ? ", " + value_text(document.at(pointer)) : "") + ": " +
+                   shortened(what, 200));
+}
 
 }  // namespace harness

@@ -33,6 +33,11 @@ struct Bounds {
 // naming it, if it is not JSON, has a key twice, or is nested deeper than our documents.
 nlohmann::json parse_document(const std::string& text, const std::string& name);
 
+// Throws UsageError, naming `path` and the first place that does not fit, unless `document` is as
+// the JSON schema `rules` says. kind: of file, for the message.
+void check_fits(const nlohmann::json& document, const nlohmann::json& rules,
+                const std::string& kind, const std::string& path);
+
 // A value for a message: short, whatever it is.
 std::string value_text(const nlohmann::json& value);
 

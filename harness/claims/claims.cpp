@@ -110,24 +110,12 @@ Curve Points::best(const std::string& scene, const std::string& sweep,
                    std::optional<double> vertices) const {
   std::map<std::pair<double, std::string>, std::vector<Point>> places;
   for (const Point& p : points_in(all, scene, sweep, vertices)) {
-    const Role role = roles.of(p.contestant());
-    if (contestant.empty() ? role.competes && !role.again : role.row() == contestant)
+    if (roles.of(p.contestant()).row() == contestant)
       places[{sweep == "strain" ? p.strain_limit() : p.vertices(), p.contestant()}].push_back(p);
   }
   Curve curve;
   for (const auto& [place, here] : places) {
     if (const auto answer = fastest_of(here, level)) keep_faster(curve, place.first, *answer);
-  }
-  return curve;
-}
-
-Curve Points::best_at_errors(const std::string& scene, const std::string& contestant) const {
-  Curve curve;
-  for (const Point& p : points_in(all, scene, "step")) {
-    if (roles.of(p.contestant()).row() != contestant || !p.ok() || !p.timed()) continue;
-    for (const double level : {0.1, 0.03, 0.01, 0.003, 0.001, 0.0003, 0.0001}) {
-      if (p.within_error(level)) keep_faster(curve, level, p);
-    }
   }
   return curve;
 }
@@ -147,11 +135,10 @@ std::vector<std::string> ids_of(const std::vector<Curve>& curves) {
   return ids;
 }
 
-Verdict at_levels(const std::function<Verdict(double level)>& judge, const Ways& more) {
-  Ways ways{{"at an error of at most 2 %", judge(headline_error)},
-            {"at any motion", judge(any_motion)}};
-  ways.insert(ways.end(), more.begin(), more.end());
-  Verdict all{ways.front().second.verdict, "", {}};
+Verdict at_levels(const std::function<Verdict(double level)>& judge) {
+  const std::pair<std::string, Verdict> ways[]{
+      {"at an error of at most 2 %", judge(headline_error)}, {"at any motion", judge(any_motion)}};
+  Verdict all{ways[0].second.verdict, "", {}};
   bool any = false;
   for (const auto& [words, way] : ways) {
     any = any || way.verdict != not_measured;

@@ -61,22 +61,18 @@ struct Points {
   ContestantRoles roles;
   std::vector<const nlohmann::json*> matrix, freedom, same_frame;  // of stability sweeps
 
-  // The best points of a contestant ("": of all) within a level of error, over the axis of a sweep
-  // ("strain" or "resolution"). The faster of tuned and default settings counts, so that tuning
+  // The best points of a contestant within a level of error, over the axis of a sweep ("strain" or
+  // "resolution"). The faster of tuned and default settings counts, so that tuning
   // harms nobody. A strain sweep counts at its largest size unless `vertices` are given.
   Curve best(const std::string& scene, const std::string& sweep, const std::string& contestant,
              double level = any_motion, std::optional<double> vertices = {}) const;
-  // Over error levels: the fastest points of step sweeps of the largest size.
-  Curve best_at_errors(const std::string& scene, const std::string& contestant) const;
 };
 
 std::optional<Point> at(const Curve& curve, double x);
 std::vector<std::string> ids_of(const std::vector<Curve>& curves);
 
-// A claim judged in several ways, each with its words: the project's question (an error of at most
-// 2 %) decides; beside it are the paper's own (any motion) and `more`.
-using Ways = std::vector<std::pair<std::string, Verdict>>;
-Verdict at_levels(const std::function<Verdict(double level)>& judge, const Ways& more = {});
+// The project's question (an error of at most 2 %) decides; beside it is the paper's (any motion).
+Verdict at_levels(const std::function<Verdict(double level)>& judge);
 
 // One function per claim; not_measured where measurements are missing.
 using Judge = Verdict(const Points& points);

@@ -74,12 +74,11 @@ Verdict growth(const Curve& springs, const Curve& fast,
 
 Verdict growth_at_levels(const Points& points, const char* sweep,
                          Answer (*fast_is_better)(const Slope&, double),
-                         std::string (*place)(double), const Ways& more = {}) {
-  const auto judge = [=, &points](double level) {
+                         std::string (*place)(double)) {
+  return at_levels([=, &points](double level) {
     return growth(points.best("chain", sweep, implicit_springs.name, level),
                   points.best("chain", sweep, fast_projection.name, level), fast_is_better, place);
-  };
-  return at_levels(judge, more);
+  });
 }
 
 std::string effort(const Point& p) {
@@ -96,36 +95,6 @@ std::string tally(const std::vector<Answer>& answers) {
          (all_of(answers) == Answer::yes ? ""
                                          : " (" + count(Answer::no) + " the other way, " +
                                                count(Answer::open) + " undecided)");
-}
-
-// The loosest limit from which on `fast` is ahead of all these curves beyond the noise.
-std::string ahead_from(const Curve& fast, const std::vector<Curve>& others) {
-  std::string from = "nowhere";
-  for (const auto& place : fast) {
-    const double limit = place.first;  // not a structured binding: Clang 14 captures none
-    const bool ahead = std::ranges::all_of(others, [&](const Curve& other) {
-      const auto there = at(other, limit);
-      return !there || above(ratio(*there, place.second), 1) == Answer::yes;
-    });
-    if (!ahead) break;
-    from = "from " + percent(limit) + " down";
-  }
-  return from;
-}
-
-// "; fastest of all, ours and rivals too: x at 10 %, 1 %; icd at 0.1 %", at the places of `fast`.
-std::string first_of_all(const Points& points, const std::string& sweep, const Curve& fast,
-                         double level, std::string (*words)(double),
-                         std::optional<double> vertices = {}) {
-  const Curve leaders = points.best("drape", sweep, "", level, vertices);
-  std::string all, last;
-  for (const auto& entry : fast) {
-    const std::string first = points.roles.of(leaders.at(entry.first).contestant()).row();
-    all += first == last ? ", " + words(entry.first)
-                         : (all.empty() ? "" : "; ") + first + " at " + words(entry.first);
-    last = first;
-  }
-  return "; fastest of all, ours and rivals too: " + all;
 }
 
 // C5 at one size. Strain limiting that was stopped far behind may have no slope at a large size.
@@ -157,9 +126,7 @@ Verdict drape_over_strain(const Points& points, double level, double vertices) {
   if (fast.size() < 3 || flatter.empty() || fastest.empty()) return {};
   return {verdict_of(all_of(flatter), all_of(fastest)),
           vertices_of(vertices) + ": flatter in " + tally(flatter) + " pairs (slopes: " + slopes +
-              "), fast projection fastest in " + tally(fastest) +
-              " comparisons, and ahead of all strain limiting " + ahead_from(fast, limiting) +
-              first_of_all(points, "strain", fast, level, percent, vertices),
+              "), fast projection fastest in " + tally(fastest) + " comparisons",
           ids_of(evidence)};
 }
 
@@ -197,11 +164,7 @@ Answer smaller(const Steps& a, const Steps& b) {
 }  // namespace
 
 Verdict chain_time_over_strain(const Points& points) {
-  const Verdict over_error =
-      growth(points.best_at_errors("chain", implicit_springs.name),
-             points.best_at_errors("chain", fast_projection.name), below, percent);
-  return growth_at_levels(points, "strain", below, percent,
-                          {{"over the error at any limit", over_error}});
+  return growth_at_levels(points, "strain", below, percent);
 }
 
 Verdict chain_time_over_resolution(const Points& points) {
@@ -277,7 +240,7 @@ Verdict drape_time_over_resolution(const Points& points) {
     return {largest == Answer::yes && all == Answer::no ? changed
             : largest == Answer::yes                    ? verdict_of(all)
                                                         : verdict_of(largest),
-            details + first_of_all(points, "resolution", fast, level, count_of), ids_of({fast})};
+            details, ids_of({fast})};
   });
 }
 

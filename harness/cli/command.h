@@ -137,6 +137,8 @@ Action verb(const Command& command) {
   VERB(tune, true,                                                                                \
        "search the settings of each solver, by one rule, on scenes that no result reports")       \
   VERB(reference, false, "compute the trajectories that errors are measured against")             \
+  VERB(export, false, "write a scene as files for other programs: OBJ, JSON and NumPy arrays")    \
+  VERB(judge, false, "judge the motion that another program made of an exported scene")           \
   VERB(point, false, "run single points, given as JSON on standard input, one a line")            \
   VERB(list, false, "print what there is: solvers, scenes, suites, verbs, cases and more")
 
@@ -156,9 +158,10 @@ inline std::vector<Verb> verbs() {
 struct SceneOptions {
   std::string scene;
   Numbers n;
-  Words set;                                        // NAME=NUMBER
-  std::string pins, load, body, floor, rest, weld;  // for a mesh
-  int least_n = 2;                                  // of --n
+  Words set;                                                        // NAME=NUMBER
+  std::string pins, load, floor, rest, weld, thickness, triangles;  // for a mesh
+  Words body, body_then;
+  int least_n = 2;  // of --n
 
   void declare(const Command& to, const std::string& standard);
   std::string name() const;                     // with what belongs to a mesh

@@ -113,15 +113,10 @@ struct Budget {
 
 struct Claims {
   Words files;
-  std::string markdown;
 
-  void declare(const Command& command) {
-    add_results(command, files, "result files");
-    command.option("--markdown", markdown, "also write the table in Markdown", "FILE");
-  }
+  void declare(const Command& command) { add_results(command, files, "result files"); }
 
   int run() {
-    if (!markdown.empty()) check_writable(markdown);
     const auto results = documents_of(read_all(files, ResultKinds::all), is_of_runs);
     if (results.empty()) throw UsageError("claims are about sweeps; results/*.json has some");
     const std::vector<ClaimVerdict> verdicts = judge_claims(results);
@@ -130,11 +125,6 @@ struct Claims {
         }))
       throw UsageError("nothing in '" + files.front() +
                        "' is what a claim is about; results/*.json are");
-    if (!markdown.empty()) {
-      std::ostringstream table;
-      print_claims_markdown(table, verdicts);
-      write_atomically(markdown, table.str());
-    }
     print_claims(std::cout, verdicts);
     return success;
   }

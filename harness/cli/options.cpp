@@ -9,6 +9,7 @@
 #include "harness/cli/command.h"
 #include "harness/judge/reference.h"
 #include "harness/scenes/scene.h"
+#include "harness/scenes/scene_folder.h"
 #include "solvers/registry.h"
 
 namespace harness {
@@ -16,7 +17,9 @@ namespace harness {
 using nlohmann::json;
 
 void SceneOptions::declare(const Command& to, const std::string& standard) {
-  to.option("--scene", scene, "one of `bench list scenes`, or mesh:FILE.obj; default: " + standard,
+  to.option("--scene", scene,
+            "one of `bench list scenes`, mesh:FILE.obj, or a folder of bench export; default: " +
+                standard,
             "SCENE");
   to.option("--n", n, "size of the scene; a resolution sweep takes several, e.g. 20,40,80", "N",
             Bounds::whole_number(least_n));
@@ -25,7 +28,19 @@ void SceneOptions::declare(const Command& to, const std::string& standard) {
             "of mesh:FILE.obj: which vertices are pinned, e.g. 'y > 1.2 and x <= 0' or 'v1 or "
             "near(1:2:0)', a vertex of the file and the nearest one",
             "WHERE");
-  to.option("--collider", body, "of mesh:FILE.obj: the body, a closed mesh", "FILE.obj");
+  to.repeatable("--collider", body, "of mesh:FILE.obj: the body, a closed mesh; repeatable",
+                "FILE.obj");
+  to.repeatable("--collider-then", body_then,
+                "of mesh:FILE.obj: the bodies moved and turned as one, at the end of the run; "
+                "repeatable, at equal intervals",
+                "FILE.obj");
+  to.option("--thickness", thickness,
+            "of mesh:FILE.obj: bodies are open surfaces, seen from the front, this thick",
+            "DISTANCE");
+  to.option("--triangles", triangles,
+            "of mesh:FILE.obj: midpoints (each triangle keeps its shape) or springs (default: what "
+            "makes no quad is held by springs)",
+            "HOW");
   to.option("--floor", floor, "of mesh:FILE.obj: a floor at this height, in the file's unit", "Y");
   to.option("--load", load,
             "of mesh:FILE.obj: the vertices that bear the weight `load` (--set load=KG), as pins",
@@ -38,9 +53,18 @@ void SceneOptions::declare(const Command& to, const std::string& standard) {
 }
 
 std::string SceneOptions::name() const {
+  const auto joined = [](const Words& files) {
+    std::string all;
+    for (const std::string& file : files) append(all, file, ";");
+    return all;
+  };
+  if (names_folder(scene)) return find_scene(scene)->name;
   return with_mesh_parts(scene, {{"pins", pins},
                                  {"load", load},
-                                 {"body", body},
+                                 {"body", joined(body)},
+                                 {"body_then", joined(body_then)},
+                                 {"thickness", thickness},
+                                 {"triangles", triangles},
                                  {"floor", floor},
                                  {"rest", rest},
                                  {"weld", weld}});

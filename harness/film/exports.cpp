@@ -4,6 +4,7 @@
 
 #include "harness/base/files.h"
 #include "harness/film/film.h"
+#include "harness/scenes/mesh_file.h"
 
 namespace harness {
 namespace {
@@ -22,19 +23,6 @@ struct Part {
     return name + number + ".obj";
   }
 };
-
-std::string obj_text(const Part& part, const inextensible::Positions& x) {
-  std::ostringstream out;
-  out.precision(9);
-  for (Eigen::Index i = 0; i < x.cols(); ++i)
-    out << "v " << x(0, i) << ' ' << x(1, i) << ' ' << x(2, i) << '\n';
-  for (const auto& [a, b, c] : part.triangles)
-    out << "f " << a + 1 << ' ' << b + 1 << ' ' << c + 1 << '\n';
-  if (part.triangles.empty()) {
-    for (const auto& [a, b] : part.edges) out << "l " << a + 1 << ' ' << b + 1 << '\n';
-  }
-  return out.str();
-}
 
 template <class Number>
 void append(std::string& bytes, Number number) {
@@ -85,11 +73,11 @@ std::vector<std::string> write_run(const Recording& recording, const FilmRun& ta
   };
   for (const Part& part : parts_of(recording, take, name)) {
     if (ending == ".pc2") {
-      write(part.name + ".obj", obj_text(part, part.at(0)));
+      write(part.name + ".obj", obj_text(part.at(0), part.triangles, part.edges, 9));
       if (!part.stays) write(part.name + ".pc2", pc2_bytes(part, frames));
     } else {
       for (std::size_t i = 0; i < (part.stays ? 1 : frames); ++i)
-        write(part.obj_file(i), obj_text(part, part.at(i)));
+        write(part.obj_file(i), obj_text(part.at(i), part.triangles, part.edges, 9));
     }
   }
   return paths;

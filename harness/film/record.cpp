@@ -58,9 +58,8 @@ std::string gave_up(double time, const std::string& why) {
   return "gave up at t = " + number_text(time, 3) + " s: " + why;
 }
 
-FilmRun take_of(const FilmSpec& spec, const Scene& scene, double energy_bound,
-                const Contestant& contestant, double limit,
-                const std::function<void(const FilmRun&)>& told) {
+FilmRun take_of(const FilmSpec& spec, const Scene& scene, const Contestant& contestant,
+                double limit, const std::function<void(const FilmRun&)>& told) {
   const double rate = spec.frames_per_second;
   FilmRun take;
   take.solver = contestant.name;
@@ -84,7 +83,7 @@ FilmRun take_of(const FilmSpec& spec, const Scene& scene, double energy_bound,
   };
   const auto judge_energy = [&] {
     if (take.energy_gained.empty())
-      take.energy_gained = energy_gained(energy, energy_bound, scene.duration);
+      take.energy_gained = energy_gained(energy, scene.energy_bound, scene.duration);
   };
   const auto go_on = [&](const State& at, const DriveState& driven) {
     const double seconds = since(begin);
@@ -108,26 +107,6 @@ FilmRun take_of(const FilmSpec& spec, const Scene& scene, double energy_bound,
   energy.finish();
   judge_energy();
   return take;
-}
-
-// A moving body can throw cloth at twice its own speed, as an elastic impact does, and lift it.
-double energy_bound_of(const Recording& recording) {
-  const Scene& scene = recording.scene;
-  if (std::isfinite(scene.energy_bound)) return scene.energy_bound;
-  const inextensible::Positions start = body_at(recording, 0);
-  inextensible::Positions before = start;
-  double longest_way = 0, rise = 0;  // m, of any vertex, between two frames and in all
-  for (std::size_t frame = 1; frame < recording.body_poses.size(); ++frame) {
-    const inextensible::Positions now = body_at(recording, frame);
-    longest_way = std::max(longest_way, (now - before).colwise().norm().maxCoeff());
-    rise = std::max(rise, (now - start).row(1).maxCoeff());
-    before = now;
-  }
-  const inextensible::Problem& problem = *scene.problem;
-  const double work = problem.total_mass() *
-                      (0.5 * std::pow(2 * longest_way * recording.spec.frames_per_second, 2) +
-                       problem.gravity().norm() * rise);
-  return Scene{}.energy_bound + work / energy_scale(scene);
 }
 
 }  // namespace
@@ -156,10 +135,9 @@ Recording record(const FilmSpec& spec, const std::function<void(const FilmRun&)>
       recording.body_poses.push_back(
           motion(scene.start.time + static_cast<double>(i) / spec.frames_per_second));
   }
-  const double energy_bound = energy_bound_of(recording);
   for (const double limit : spec.strain_limits) {
     for (const Contestant& contestant : spec.solvers)
-      recording.takes.push_back(take_of(spec, scene, energy_bound, contestant, limit, told));
+      recording.takes.push_back(take_of(spec, scene, contestant, limit, told));
   }
   return recording;
 }

@@ -83,6 +83,29 @@ std::shared_ptr<const Reference> exact_reference(const std::string& scene_name,
   return r;
 }
 
+// Of a scene whose files name its reference. Null where the scene lasts otherwise than there.
+std::shared_ptr<const Reference> reference_from_files(const std::string& scene,
+                                                      const SceneParameters& complete) {
+  const auto type = find_scene(scene);
+  if (type->reference.empty()) return nullptr;
+  const NumberArrays arrays = read_npz(type->reference);
+  for (const char* name : {"times", "positions", "gap", "gap_max"})
+    if (!arrays.contains(name))
+      throw UsageError("'" + type->reference + "' has no array '" + name + "'");
+  auto r = std::make_shared<Reference>();
+  r->scene = scene;
+  r->parameters = complete;
+  r->method = r->second_method = "files";
+  r->times = arrays.at("times").values;
+  r->gap = arrays.at("gap").values;
+  r->gap_max = arrays.at("gap_max").values;
+  r->positions = path_of(arrays.at("positions"), type->reference);
+  if (const std::string why = mismatch(*r); !why.empty())
+    throw UsageError("'" + type->reference + "': " + why);
+  if (!r->positions.empty()) r->valid_until = r->times[r->positions.size() - 1];
+  return std::abs(r->duration() - complete.at("duration")) < sample_interval ? r : nullptr;
+}
+
 // Durations differ where names do not.
 std::string key_of(const std::string& name, const SceneParameters& complete) {
   return name + " " + number_text(complete.at("duration"));
@@ -159,6 +182,32 @@ Path path_of(const json& rows) {
   return path;
 }
 
+NumberArray array_of(const Path& path) {
+  NumberArray array{{path.size(), static_cast<std::size_t>(path.empty() ? 0 : path[0].cols()), 3},
+                    {}};
+  for (const Positions& x : path)
+    array.values.insert(array.values.end(), x.data(), x.data() + x.size());
+  return array;
+}
+
+Path path_of(const NumberArray& array, const std::string& file) {
+  if (array.shape.size() != 3 || array.shape[2] != 3)
+    throw UsageError("'" + file + "': 'positions' must be of frames x vertices x 3 numbers");
+  const auto vertices = static_cast<Eigen::Index>(array.shape[1]);
+  Path path;
+  for (std::size_t k = 0; k < array.shape[0]; ++k)
+    path.emplace_back(
+        Eigen::Map<const Positions>(array.values.data() + k * 3 * array.shape[1], 3, vertices));
+  return path;
+}
+
+NumberArrays arrays_of(const Reference& r) {
+  return {{"times", {{r.times.size()}, r.times}},
+          {"positions", array_of(r.positions)},
+          {"gap", {{r.gap.size()}, r.gap}},
+          {"gap_max", {{r.gap_max.size()}, r.gap_max}}};
+}
+
 json to_json(const Reference& r) {
   json object = {{"schema", reference_schema}};
   write_fields(object, reference_fields, r);
@@ -205,6 +254,7 @@ std::shared_ptr<const Reference> ReferenceFolder::find(const std::string& scene,
   const std::string name = reference_name(scene, complete);
   auto [place, fresh] = known_.try_emplace(key_of(name, complete), nullptr);
   if (fresh) place->second = exact_reference(scene, complete);
+  if (fresh && !place->second) place->second = reference_from_files(scene, complete);
   for (const std::string& folder : folders_) {
     const std::string path = folder + "/" + name;
     if (!fresh || place->second || !std::filesystem::exists(path)) continue;

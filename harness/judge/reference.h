@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/base/npz.h"
 #include "harness/points/measures.h"
 #include "harness/scenes/scene.h"
 
@@ -70,6 +71,12 @@ Reference reference_of(const nlohmann::json& document, const std::string& path,
 // A path as rows of coordinates, rounded to this many parts of a metre; 0: not rounded.
 nlohmann::json rows_of(const Path& path, double per_metre = 0);
 Path path_of(const nlohmann::json& rows);
+// The same as an array of frames x vertices x 3. Throws UsageError for another shape.
+NumberArray array_of(const Path& path);
+Path path_of(const NumberArray& array, const std::string& file);
+
+// The same as arrays for NumPy, and back: positions (samples x vertices x 3), times, gap, gap_max.
+NumberArrays arrays_of(const Reference& reference);
 
 // Where a scene's reference is written: results/references, or beside the user's own results where
 // it is made of files or the program is installed.

@@ -15,6 +15,7 @@
 #include "harness/base/files.h"
 #include "harness/base/pattern.h"
 #include "harness/base/text.h"
+#include "harness/points/processes.h"
 #include "solvers/c_method.h"
 #include "solvers/registry.h"
 
@@ -86,10 +87,10 @@ std::vector<Struct> adopted(const Struct* first, std::int32_t count, std::uint32
 }
 
 // A crash here is not one of the program.
-void try_in_child(const std::string& path) {
+void try_in_child(const std::function<void()>& load) {
   const ChildOutcome child = run_in_child(
-      [&path](Heartbeat&) {
-        table_of(path);
+      [&load](Heartbeat&) {
+        load();
         return std::string();
       },
       {.timeout = 60, .interrupted = interrupted});
@@ -101,8 +102,25 @@ void try_in_child(const std::string& path) {
     throw std::runtime_error(ending(child) + " while it was loaded");
 }
 
+// The hash is that of the command, and of the program's file where it is one.
+Plugin add_process(const std::string& command) {
+  try_in_child([&command] { process_solver(command); });
+  const ProcessSolver solver = process_solver(command);
+  inextensible::add_backends({&solver.row, 1});
+  const std::string program = command.substr(0, command.find(' '));
+  std::error_code error;
+  const bool is_file = std::filesystem::is_regular_file(program, error);
+  return {std::filesystem::path(program).filename().string(),
+          solver.version,
+          fnv1a(command + (is_file ? read_file(program, "plug-in") : "")),
+          {solver.row.name},
+          true};
+}
+
 Plugin add(const std::string& path) {
-  try_in_child(path);
+  constexpr std::string_view command_prefix = "cmd:";
+  if (path.starts_with(command_prefix)) return add_process(path.substr(command_prefix.size()));
+  try_in_child([&path] { table_of(path); });
   std::fenv_t numbers;
   std::fegetenv(&numbers);
   const std::string locale = std::setlocale(LC_ALL, nullptr);

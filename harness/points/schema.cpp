@@ -2,16 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <valijson/adapters/nlohmann_json_adapter.hpp>
-#include <valijson/schema.hpp>
-#include <valijson/schema_parser.hpp>
-#include <valijson/validation_results.hpp>
-#include <valijson/validator.hpp>
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/json.h"
-#include "harness/base/text.h"
 #include "harness/points/point_json.h"
 #include "harness/points/suite.h"
 
@@ -103,15 +97,6 @@ ordered_json schema_document(const std::string& name) {
   return schema;
 }
 
-// The keys of all objects that a schema describes.
-void add_keys(const json& rules, std::vector<std::string>& keys) {
-  for (const auto& [name, rule] : rules.items()) {
-    for (const auto& property : rule.items())
-      if (name == "properties") keys.push_back(property.key());
-    if (rule.is_structured()) add_keys(rule, keys);
-  }
-}
-
 }  // namespace
 
 std::vector<std::string> generated_schemas() {
@@ -151,37 +136,7 @@ ordered_json legend(const Contestants& contestants) {
 std::vector<std::string> counter_names() { return work_schema().at("required"); }
 
 void check_schema(const json& document, const std::string& schema, const std::string& path) {
-  const json rules = schema_document(schema);
-  const valijson::adapters::NlohmannJsonAdapter rules_adapter(rules), adapter(document);
-  valijson::Schema parsed;
-  valijson::SchemaParser().populateSchema(rules_adapter, parsed);
-  valijson::ValidationResults results;
-  if (valijson::Validator().validate(parsed, adapter, &results)) return;
-  // The errors come from the inside out: the first one is the place itself.
-  valijson::ValidationResults::Error error;
-  results.popError(error);
-  std::string place;
-  json::json_pointer pointer;
-  for (const std::string& step : error.context) {
-    if (step == "<root>") continue;
-    place += step;
-    pointer /= step.substr(1, step.size() - 2);  // [key] or [index]
-  }
-  const bool plain = document.contains(pointer) && document.at(pointer).is_primitive();
-  std::string what = error.description;
-  if (what.starts_with("Object contains a property")) {
-    const auto begin = what.rfind(": '") + 3;
-    const std::string key = what.substr(begin, what.rfind('\'') - begin);
-    std::vector<std::string> keys;
-    add_keys(rules, keys);
-    std::erase(keys, key);  // known elsewhere
-    const std::string near = closest(key, keys);
-    what = "unknown key '" + key + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?");
-  }
-  throw UsageError("'" + path + "' is not a " + schema + " file: at " +
-                   (place.empty() ? "its top" : shortened(place, 100)) +
-                   (plain ? ", " + value_text(document.at(pointer)) : "") + ": " +
-                   shortened(what, 200));
+  check_fits(document, schema_document(schema), schema, path);
 }
 
 }  // namespace harness

@@ -163,7 +163,7 @@ std::set<Side> sides_of(const std::vector<Face>& faces) {
 
 // What keeps its length.
 std::set<Side> constrained_sides(const ClothMesh& mesh) {
-  std::set<Side> sides = sides_of(mesh.quads);
+  std::set<Side> sides = mesh.medial ? sides_of(mesh.triangles) : sides_of(mesh.quads);
   for (const auto& [a, b] : mesh.ropes) sides.insert(side(a, b));
   return sides;
 }
@@ -210,9 +210,45 @@ std::vector<double> areas(const ClothMesh& mesh) {
     for (const int v : {a, b, c, d}) all[v] += area / 4;
   }
   for (const auto& [a, b, c] : mesh.triangles) {
-    for (const int v : {a, b, c}) all[v] += triangle_area(x[a], x[b], x[c]) / 3;
+    const double area = (mesh.medial ? 4 : 1) * triangle_area(x[a], x[b], x[c]);
+    for (const int v : {a, b, c}) all[v] += area / 3;
   }
   return all;
+}
+
+// Two triangles that share the midpoint m bend about the side that it halves, to which a1 - b1 and
+// a2 - b2 are parallel. Of T1 = (m, a1, b1) and q = a2 or b2 the sum of coefficients times
+// positions vanishes where both lie in one plane; turned by theta it is d theta, d the distance of
+// q from the side. Both sums share the energy of a hinge, B / 2 theta^2 3 |side|^2 / (A1 + A2).
+inextensible::Bending hinges_of(const ClothMesh& mesh, double rigidity) {
+  std::vector<std::vector<std::array<int, 2>>> across(mesh.vertices.size());
+  for (const auto& [a, b, c] : mesh.triangles) {
+    across[a].push_back({b, c});
+    across[b].push_back({c, a});
+    across[c].push_back({a, b});
+  }
+  inextensible::Bending bending;
+  for (int m = 0; m < static_cast<int>(across.size()); ++m) {
+    if (across[m].size() != 2) continue;
+    const auto [a1, b1] = across[m][0];
+    const auto [b2, a2] = across[m][1];  // which runs the other way round
+    const auto from_m = [&](int v) { return (mesh.vertices[v] - mesh.vertices[m]).eval(); };
+    const Eigen::Vector3d side = from_m(b1) - from_m(a1), other = from_m(b2) - from_m(a2);
+    const double length = side.norm();  // half of the side's
+    const auto along = [&](int v, const Eigen::Vector3d& way) {
+      return from_m(v).dot(way) / way.norm();
+    };
+    const double d1 = side.cross(from_m(a1)).norm() / length;
+    const double d2 = other.cross(from_m(a2)).norm() / other.norm();
+    const double area = 4 * 0.5 * (length * d1 + other.norm() * d2), ratio = d2 / d1;
+    const double stiffness = rigidity * 3 * 4 * length * length / (2 * area * d2 * d2);
+    for (const int q : {a2, b2}) {
+      if (mesh.held[a1] && mesh.held[b1] && mesh.held[m] && mesh.held[q]) continue;
+      const double alpha = (along(q, other) + ratio * along(b1, side)) / length;
+      bending.push_back({{a1, b1, m, q}, {alpha, ratio - alpha, -1 - ratio, 1}, stiffness});
+    }
+  }
+  return bending;
 }
 
 }  // namespace
@@ -239,7 +275,7 @@ std::vector<int> pieces_of(const ClothMesh& mesh) {
   return piece;
 }
 
-ClothMesh cloth_of(const MeshFile& file) {
+ClothMesh cloth_of(const MeshFile& file, bool triangles_only) {
   const std::vector<MeshFile::Face> faces = distinct_faces(file);
   check_sides(file, faces);
   ClothMesh cloth;
@@ -254,7 +290,7 @@ ClothMesh cloth_of(const MeshFile& file) {
   };
   std::vector<std::array<int, 3>> triangles;
   for (const auto& [c, line] : faces) {
-    if (c.size() == 4) {
+    if (c.size() == 4 && !triangles_only) {
       cloth.quads.push_back({vertex(c[0]), vertex(c[1]), vertex(c[2]), vertex(c[3])});
       continue;
     }
@@ -263,7 +299,8 @@ ClothMesh cloth_of(const MeshFile& file) {
   }
   std::vector<char> taken(triangles.size(), 0);
   for (const Pairing& pairing : pairings(cloth.vertices, triangles)) {
-    if (pairing.oblique > most_oblique || taken[pairing.i] || taken[pairing.j]) continue;
+    if (triangles_only || pairing.oblique > most_oblique || taken[pairing.i] || taken[pairing.j])
+      continue;
     taken[pairing.i] = taken[pairing.j] = 1;
     cloth.quads.push_back(pairing.quad);
   }
@@ -288,6 +325,28 @@ ClothMesh refined(const ClothMesh& mesh, int n) {
       refinement.fine.ropes.push_back(
           {refinement.on_side(a, b, i), refinement.on_side(a, b, i + 1)});
   return refinement.fine;
+}
+
+ClothMesh midpoints_of(const ClothMesh& mesh) {
+  ClothMesh made;
+  made.medial = true;
+  std::map<Side, int> middle;
+  for (const auto& triangle : mesh.triangles) {
+    auto& corners = made.triangles.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Side s = side_of(triangle, k);
+      const auto [found, fresh] = middle.try_emplace(s, static_cast<int>(made.vertices.size()));
+      corners[k] = found->second;
+      if (!fresh) continue;
+      made.vertices.push_back(0.5 * (mesh.vertices[s.first] + mesh.vertices[s.second]));
+      const auto either = [&](const std::vector<char>& flags) -> char {
+        return !flags.empty() && (flags[s.first] || flags[s.second]);
+      };
+      made.held.push_back(either(mesh.held));
+      made.loaded.push_back(either(mesh.loaded));
+    }
+  }
+  return made;
 }
 
 ParameterInfos with_cloth_parameters(const ParameterInfos& own, const ClothDefaults& cloth,
@@ -332,6 +391,7 @@ Draft cloth_draft(const ClothMesh& mesh, const SceneParameters& p) {
     if (!springs.edges.empty()) parts.shear = std::move(springs);
   }
   if (p.at("bending") > 0) {
+    if (mesh.medial) parts.bending = hinges_of(mesh, p.at("bending"));
     for (const auto& [a, b, c] : yarns_of(mesh)) {
       if (held(a, b, c)) continue;
       const double before = length(a, b), after = length(b, c);

@@ -20,19 +20,28 @@ struct ClothMesh {
   std::vector<std::array<int, 2>> ropes = {};
   std::vector<int> in_file = {};  // of each vertex, its place in the file; empty once it is refined
   std::vector<char> held = {};    // of each vertex, whether a scene pins it
+  std::vector<char> loaded = {};  // whether a weight hangs there
+  // Vertices are the midpoints of another mesh's sides, and triangles join those of one triangle.
+  bool medial = false;
 };
 
 // Quads of a file's faces: triangles are joined to quads where two make one whose angles are within
 // `most_oblique` of right ones, the best first. Faces of more corners are fans of triangles.
-// Lines are ropes. Vertices that neither has are left out. Throws UsageError for what
-// distinct_faces() refuses, and for sides of more than two faces.
-ClothMesh cloth_of(const MeshFile& file);
+// Lines are ropes. Vertices that neither has are left out. With `triangles` nothing is joined.
+// Throws UsageError for what distinct_faces() refuses, and for sides of more than two faces.
+ClothMesh cloth_of(const MeshFile& file, bool triangles = false);
 
 // The piece that each vertex is of, from 0 on: faces and ropes that share a vertex are of one.
 std::vector<int> pieces_of(const ClothMesh& mesh);
 
 // Each side cut into n.
 ClothMesh refined(const ClothMesh& mesh, int n);
+
+// Triangles by the midpoints of their sides. The triangles of midpoints keep their shape, share
+// corners only, and so leave a cloth three degrees of freedom a vertex, where triangles that keep
+// all their sides lock (English and Bridson 2008, "Animating Developable Surfaces using
+// Nonconforming Elements"). A midpoint is held, or loaded, if an end of its side is.
+ClothMesh midpoints_of(const ClothMesh& mesh);
 
 // ---- The scene ----
 
@@ -43,7 +52,8 @@ ParameterInfos with_cloth_parameters(const ParameterInfos& own, const ClothDefau
 // The cloth is at rest, and unstretched, as the mesh lies. Sides of quads and ropes keep their
 // length;
 // diagonals of quads, and the other sides of triangles, are springs of the shear stiffness (each
-// diagonal bears G (l gamma)^2 / 4 of a square sheared by gamma); yarns bend, straight at rest;
+// diagonal bears G (l gamma)^2 / 4 of a square sheared by gamma); yarns bend, straight at rest, and
+// triangles of midpoints against each other, flat at rest;
 // all forces act as they are at the end of a step. Parameters: density (kg/m^2), gravity, shear
 // (N/m), bending (N m), drag (N s/m^3), duration, and line_density (kg/m) if there are ropes. Left
 // to the caller: the scene's size, and what is not at rest there.

@@ -99,6 +99,19 @@ MeshFile read_mesh_file(const std::string& path) {
   return mesh;
 }
 
+std::string obj_text(const Eigen::Matrix3Xd& x, const std::vector<std::array<int, 3>>& triangles,
+                     const std::vector<inextensible::Edge>& edges, int digits) {
+  std::ostringstream out;
+  out.precision(digits);
+  for (const auto& v : x.colwise()) out << "v " << v.x() << ' ' << v.y() << ' ' << v.z() << '\n';
+  for (const auto& [a, b, c] : triangles)
+    out << "f " << a + 1 << ' ' << b + 1 << ' ' << c + 1 << '\n';
+  if (triangles.empty()) {
+    for (const auto& [a, b] : edges) out << "l " << a + 1 << ' ' << b + 1 << '\n';
+  }
+  return out.str();
+}
+
 void weld(MeshFile& file, double distance) {
   using Cell = std::array<long, 3>;
   std::map<Cell, std::vector<int>> in_cell;

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "solvers/problem/problem.h"
+
 namespace harness {
 
 struct MeshFile {
@@ -27,6 +29,11 @@ struct MeshFile {
 // Throws UsageError, naming file and line, for any other keyword, numbers that are none, corners
 // without a vertex, and files without a face or line.
 MeshFile read_mesh_file(const std::string& path);
+
+// Wavefront OBJ: triangles, or the edges as lines where there are none. Coordinates are read back
+// to the last bit; with `digits` they are rounded.
+std::string obj_text(const Eigen::Matrix3Xd& x, const std::vector<std::array<int, 3>>& triangles,
+                     const std::vector<inextensible::Edge>& edges, int digits = 17);
 
 // Corners closer than `distance` (in the file's unit) become one vertex, the first of them.
 void weld(MeshFile& file, double distance);

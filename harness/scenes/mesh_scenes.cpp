@@ -16,6 +16,7 @@
 #include "harness/base/files.h"
 #include "harness/base/text.h"
 #include "harness/scenes/cloth_mesh.h"
+#include "harness/scenes/scene_folder.h"
 #include "solvers/problem/triangle_collider.h"
 
 namespace harness {
@@ -95,16 +96,21 @@ struct MeshModel {
   std::string name, identity;  // name: with the hash of all that the scene is made of
   Condition pinned, loaded;    // empty: nothing is
   ClothMesh cloth, start;      // unstretched, and where it begins
+  bool midpoints = false;      // triangles by the midpoints of their sides
   inextensible::TriangleMesh body;
-  std::optional<double> floor;  // its height
+  std::vector<inextensible::Pose> poses;  // of the body at equal intervals; empty: it stays
+  std::optional<double> floor;            // its height
 
   bool has_body() const { return floor || !body.triangles.empty(); }
 };
 
-ClothMesh with_pins(const MeshModel& model, ClothMesh cloth, const ClothMesh& start) {
-  for (const Eigen::Vector3d& v : start.vertices)
+// The cloth that is simulated, with what is held and loaded where it begins.
+ClothMesh simulated(const MeshModel& model, ClothMesh cloth, const ClothMesh& start) {
+  for (const Eigen::Vector3d& v : start.vertices) {
     cloth.held.push_back(model.pinned && model.pinned(v));
-  return cloth;
+    cloth.loaded.push_back(model.loaded && model.loaded(v));
+  }
+  return model.midpoints ? midpoints_of(cloth) : cloth;
 }
 
 // The triangles of a closed surface, counter-clockwise seen from outside: those that are turned
@@ -163,6 +169,51 @@ inextensible::TriangleMesh body_of(const MeshFile& file) {
   return body;
 }
 
+// An open surface with a back, `thickness` behind it as its faces look, and sides around its rim.
+MeshFile thickened(MeshFile file, double thickness) {
+  const auto n = static_cast<int>(file.vertices.size());
+  std::vector<Eigen::Vector3d> normal(file.vertices.size(), Eigen::Vector3d::Zero());
+  std::set<std::pair<int, int>> sides;  // as faces pass them
+  for (const auto& [c, line] : file.faces) {
+    for (std::size_t k = 0; k < c.size(); ++k) {
+      const int a = c[k], b = c[(k + 1) % c.size()];
+      if (!sides.emplace(a, b).second)
+        throw UsageError("'" + file.path + "': its faces look different ways, so it has no front");
+      normal[a] += (file.vertices[b] - file.vertices[a])
+                       .cross(file.vertices[c[(k + c.size() - 1) % c.size()]] - file.vertices[a]);
+    }
+  }
+  for (int v = 0; v < n; ++v)
+    file.vertices.push_back(file.vertices[v] - thickness * normal[v].normalized());
+  for (std::size_t f = 0, faces = file.faces.size(); f < faces; ++f) {
+    MeshFile::Face back = file.faces[f];
+    std::ranges::reverse(back.corners);
+    for (int& corner : back.corners) corner += n;
+    file.faces.push_back(std::move(back));
+  }
+  for (const auto& [a, b] : sides)
+    if (!sides.contains({b, a})) file.faces.push_back({{b, a, a + n, b + n}, 0});
+  return file;
+}
+
+// The rigid motion that takes a body to its shape in another file.
+inextensible::Pose pose_between(const MeshFile& body, const MeshFile& there) {
+  const auto columns = [](const std::vector<Eigen::Vector3d>& points) {
+    return Eigen::Map<const Eigen::Matrix3Xd>(points.data()->data(), 3, std::ssize(points));
+  };
+  if (body.vertices.size() != there.vertices.size())
+    throw UsageError("'" + there.path + "' has other vertices than '" + body.path + "'");
+  const Eigen::Matrix4d fit =
+      Eigen::umeyama(columns(body.vertices), columns(there.vertices), false);
+  const inextensible::Pose pose{fit.topLeftCorner<3, 3>(), fit.topRightCorner<3, 1>()};
+  for (std::size_t v = 0; v < body.vertices.size(); ++v)
+    if ((pose(body.vertices[v]) - there.vertices[v]).norm() >
+        1e-4 * there.vertices[v].norm() + 1e-6)
+      throw UsageError("'" + there.path + "' is not '" + body.path +
+                       "' moved and turned: a body cannot change its shape");
+  return pose;
+}
+
 Eigen::AlignedBox3d box_of(const std::vector<Eigen::Vector3d>& points) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& point : points) box.extend(point);
@@ -214,6 +265,19 @@ void check_start(const std::string& path, const ClothMesh& cloth,
                             number_text(-deepest, 3), " of the file's units"));
 }
 
+// Throws UsageError where one body is inside another: their union would have faces within.
+void check_apart(const std::string& path, const inextensible::TriangleMesh& body,
+                 const inextensible::TriangleMesh& others) {
+  const inextensible::TriangleCollider one(body, 0), other(others, 0);
+  const auto inside = [](const auto& mesh, const inextensible::TriangleCollider& around) {
+    return std::ranges::any_of(mesh.vertices, [&](const Eigen::Vector3d& v) {
+      return around.nearest(v).signed_distance < 0;
+    });
+  };
+  if (inside(body, other) || inside(others, one))
+    throw UsageError("'" + path + "' reaches into another body: bodies must be apart");
+}
+
 // The same faces and lines elsewhere.
 ClothMesh in_shape_of(const MeshFile& file, ClothMesh cloth, const MeshFile& rest) {
   const auto same = [](const MeshFile::Face& a, const MeshFile::Face& b) {
@@ -229,8 +293,9 @@ ClothMesh in_shape_of(const MeshFile& file, ClothMesh cloth, const MeshFile& res
 
 // "mesh:m.obj,pins=y>1,body=b.obj": the words after the file, by what they are for.
 std::map<std::string, std::string> parts_of(const std::string& name) {
-  static const std::set<std::string> known{"pins", "body",  "weld",   "rest",
-                                           "load", "floor", "content"};
+  static const std::set<std::string> known{"pins",    "body",     "weld",      "rest",
+                                           "load",    "floor",    "body_then", "thickness",
+                                           "content", "triangles"};
   std::map<std::string, std::string> parts;
   std::istringstream words(name.substr(prefix.size()));
   std::getline(words, parts["file"], ',');
@@ -238,7 +303,7 @@ std::map<std::string, std::string> parts_of(const std::string& name) {
     const std::string part = word.substr(0, word.find('='));
     if (!known.contains(part) || part.size() == word.size())
       throw UsageError("scene '" + name + "': '" + word +
-                       "' must begin with pins=, body=, weld=, rest=, load= or floor=, as in "
+                       "' must begin with pins=, body=, floor= or the like, as in "
                        "mesh:shirt.obj,pins=y>1.2");
     parts[part] = word.substr(part.size() + 1);
   }
@@ -271,20 +336,48 @@ std::string description_of(const MeshModel& model, const MeshFile& file, const C
                  largest > 20     ? "; that is large: centimetres would be scale=0.01\n"
                  : largest < 0.02 ? "; that is small: check the unit\n"
                                   : "\n");
-  text += concat("  warp and weft: the sides of ", cloth.quads.size(), " quads, of which ",
-                 cloth.quads.size() -
-                     static_cast<std::size_t>(std::ranges::count_if(
-                         file.faces, [](const auto& face) { return face.corners.size() == 4; })),
-                 " are two triangles; the other ", cloth.triangles.size(),
-                 " triangles are held by springs\n");
-  text +=
-      concat("  ", count_cloth(cloth).second,
-             " sides keep their length; pinned: ", std::ranges::count(cloth.held, char{1}),
-             " vertices; loaded: ",
-             model.loaded ? std::ranges::count_if(model.start.vertices, model.loaded) : 0, "\n");
+  if (cloth.medial)
+    text += concat("  ", cloth.triangles.size(), " triangles, by the midpoints of their sides\n");
+  else
+    text += concat("  warp and weft: the sides of ", cloth.quads.size(), " quads, of which ",
+                   cloth.quads.size() -
+                       static_cast<std::size_t>(std::ranges::count_if(
+                           file.faces, [](const auto& face) { return face.corners.size() == 4; })),
+                   " are two triangles; the other ", cloth.triangles.size(),
+                   " triangles are held by springs\n");
+  text += concat("  ", count_cloth(cloth).second,
+                 " sides keep their length; pinned: ", std::ranges::count(cloth.held, char{1}),
+                 " vertices; loaded: ", std::ranges::count(cloth.loaded, char{1}), "\n");
   text += concat("  below: ", model.body.triangles.size(), " triangles of a body",
+                 model.poses.empty() ? "" : " that moves",
                  model.floor ? concat(", a floor at ", *model.floor) : "", "\n");
   return text;
+}
+
+// Several bodies are one mesh; each file of body_then has all of them, moved and turned as one.
+template <class Read>
+void add_bodies(MeshModel& model, std::map<std::string, std::string>& parts, const Read& read) {
+  MeshFile all{parts["body"], {}, {}};
+  const std::optional<double> thickness = number_of(parts, "thickness", 0);
+  for (const std::string& path : split(parts["body"], ";")) {
+    MeshFile file = read(path);
+    if (thickness) file = thickened(std::move(file), *thickness);
+    inextensible::TriangleMesh body = body_of(file);
+    const auto first = static_cast<int>(model.body.vertices.size());
+    if (first > 0) check_apart(path, body, model.body);
+    for (auto& triangle : body.triangles)
+      for (int& corner : triangle) corner += first;
+    const auto add = [](auto& to, const auto& from) {
+      to.insert(to.end(), from.begin(), from.end());
+    };
+    add(model.body.vertices, body.vertices);
+    add(model.body.triangles, body.triangles);
+    add(all.vertices, read(path).vertices);
+  }
+  if (!parts.contains("body_then")) return;
+  model.poses.emplace_back();
+  for (const std::string& path : split(parts["body_then"], ";"))
+    model.poses.push_back(pose_between(all, read(path)));
 }
 
 std::shared_ptr<const MeshModel> read_model(const std::string& name) {
@@ -293,20 +386,19 @@ std::shared_ptr<const MeshModel> read_model(const std::string& name) {
   const std::string expected = parts["content"];
   parts.erase("content");
   std::string content;
-  for (const auto& [part, text] : parts)
-    content += part == "file" || part == "body" || part == "rest" ? read_file(text, "mesh")
-                                                                  : part + "=" + text + ",";
+  static const std::set<std::string> of_files{"file", "body", "body_then", "rest"};
+  for (const auto& [part, text] : parts) {
+    if (!of_files.contains(part)) content += part + "=" + text + ",";
+    for (const std::string& file :
+         of_files.contains(part) ? split(text, ";") : std::vector<std::string>())
+      content += read_file(file, "mesh");
+  }
   model->identity = fnv1a(content);
   const std::string& path = parts["file"];
   if (!expected.empty() && expected != model->identity)
     throw UsageError("'" + path + "' has changed: the scene's files and pins have the hash " +
                      expected + ", these have " + model->identity);
   model->name = name + (expected.empty() ? ",content=" + model->identity : "");
-  // A large body takes seconds to examine, and a scene is looked up many times.
-  static std::map<std::string, std::shared_ptr<const MeshModel>> known;
-  std::shared_ptr<const MeshModel>& kept = known[model->name];
-  if (kept) return kept;
-
   const std::optional<double> welded = number_of(parts, "weld", 0);
   if (welded && parts.contains("rest")) throw UsageError("--weld and --rest exclude each other");
   const auto read = [&](const std::string& file) {
@@ -315,20 +407,27 @@ std::shared_ptr<const MeshModel> read_model(const std::string& name) {
     return mesh;
   };
   const MeshFile file = read(path);
-  model->cloth = model->start = cloth_of(file);
+  if (parts.contains("triangles")) {
+    if (parts["triangles"] != "midpoints" && parts["triangles"] != "springs")
+      throw UsageError("--triangles is '" + parts["triangles"] + "', must be midpoints or springs");
+    model->midpoints = parts["triangles"] == "midpoints";
+    if (model->midpoints && !file.ropes.empty())
+      throw UsageError("--triangles midpoints: '" + path + "' has lines, which have no triangles");
+  }
+  model->cloth = model->start = cloth_of(file, model->midpoints);
   if (parts.contains("rest")) {
     const MeshFile rest = read(parts["rest"]);
-    model->cloth = cloth_of(rest);
+    model->cloth = cloth_of(rest, model->midpoints);
     model->start = in_shape_of(file, model->cloth, rest);
   }
   if (parts.contains("pins")) model->pinned = read_pins(without_spaces(parts["pins"]), file);
   if (parts.contains("load")) model->loaded = read_pins(without_spaces(parts["load"]), file);
   model->floor = number_of(parts, "floor", -1e6);
-  if (parts.contains("body")) model->body = body_of(read(parts["body"]));
+  if (parts.contains("body")) add_bodies(*model, parts, read);
   if (model->floor && parts.contains("body"))
     throw UsageError("--floor and --collider exclude each other: only one body is searched fast");
 
-  const ClothMesh cloth = with_pins(*model, model->cloth, model->start);
+  const ClothMesh cloth = simulated(*model, model->cloth, model->start);
   const bool holds = std::ranges::any_of(cloth.held, std::identity{});
   if (model->pinned && !holds)
     throw UsageError("scene '" + name + "': no vertex is where the pins are");
@@ -340,13 +439,13 @@ std::shared_ptr<const MeshModel> read_model(const std::string& name) {
                      "HEIGHT or --collider FILE");
   check_cloth(path, file, cloth, model->has_body(), welded.has_value());
   model->description = description_of(*model, file, cloth);
-  if (model->body.triangles.empty()) return kept = model;
+  if (model->body.triangles.empty()) return model;
   try {
     check_start(path, model->start, inextensible::TriangleCollider(model->body, 0));
   } catch (const std::invalid_argument& error) {
     throw UsageError("'" + parts["body"] + "' is not a body to collide with: " + error.what());
   }
-  return kept = model;
+  return model;
 }
 
 // Metres, with y upwards.
@@ -356,13 +455,19 @@ Eigen::Vector3d placed(const Eigen::Vector3d& x, const SceneParameters& p) {
   return s * x;
 }
 
+inextensible::Pose placed(const inextensible::Pose& pose, const SceneParameters& p) {
+  Eigen::Matrix3d axes;
+  for (int i = 0; i < 3; ++i) axes.col(i) = placed(Eigen::Vector3d::Unit(i), p) / p.at("scale");
+  return {axes * pose.turn * axes.transpose(), placed(pose.translation, p)};
+}
+
 ClothMesh placed(ClothMesh cloth, const SceneParameters& p) {
   for (Eigen::Vector3d& v : cloth.vertices) v = placed(v, p);
   return cloth;
 }
 
 ClothMesh cloth_for(const MeshModel& model, const ClothMesh& start, const SceneParameters& p) {
-  return placed(with_pins(model, refined(model.cloth, whole(p)), start), p);
+  return placed(simulated(model, refined(model.cloth, whole(p)), start), p);
 }
 
 // A block whose top is the floor, far wider than the cloth.
@@ -381,16 +486,14 @@ void add_floor(inextensible::TriangleMesh& body, double height, const Eigen::Ali
 }
 
 Scene build_mesh(const MeshModel& model, const SceneParameters& p) {
-  const ClothMesh begins = refined(model.start, whole(p)), start = placed(begins, p);
-  Draft draft = cloth_draft(cloth_for(model, begins, p), p);
+  const ClothMesh begins = refined(model.start, whole(p)), cloth = cloth_for(model, begins, p),
+                  start = placed(model.midpoints ? midpoints_of(begins) : begins, p);
+  Draft draft = cloth_draft(cloth, p);
   const Eigen::AlignedBox3d box = box_of(start.vertices);
-  int loaded = 0;
-  for (std::size_t v = 0; v < start.vertices.size(); ++v) {
-    draft.scene.start.x.col(static_cast<Eigen::Index>(v)) = start.vertices[v];
-    loaded += model.loaded && model.loaded(begins.vertices[v]);
-  }
-  for (std::size_t v = 0; loaded > 0 && v < start.vertices.size(); ++v)
-    if (model.loaded(begins.vertices[v])) draft.parts.mass[v] += p.at("load") / loaded;
+  std::copy(start.vertices.begin(), start.vertices.end(), draft.scene.start.x.colwise().begin());
+  const auto loaded = static_cast<double>(std::ranges::count(cloth.loaded, char{1}));
+  for (std::size_t v = 0; v < start.vertices.size(); ++v)
+    if (cloth.loaded[v]) draft.parts.mass[v] += p.at("load") / loaded;
   if (model.has_body()) {
     inextensible::TriangleMesh body = model.body;
     for (Eigen::Vector3d& v : body.vertices) v = placed(v, p);
@@ -403,6 +506,13 @@ Scene build_mesh(const MeshModel& model, const SceneParameters& p) {
     }
     draft.parts.collider =
         std::make_shared<const inextensible::TriangleCollider>(std::move(body), p.at("friction"));
+    if (!model.poses.empty()) {
+      std::vector<inextensible::Pose> poses;
+      for (const inextensible::Pose& pose : model.poses) poses.push_back(placed(pose, p));
+      const double interval = p.at("duration") / static_cast<double>(poses.size() - 1);
+      draft.parts.body_motion = motion_through(std::move(poses), interval);
+      draft.scene.energy_bound = std::numeric_limits<double>::infinity();  // it does work
+    }
   }
   draft.scene.size = box.diagonal().norm();
   return finished(std::move(draft));
@@ -419,9 +529,10 @@ std::string with_mesh_parts(const std::string& scene,
     if (text.empty()) continue;
     if (text.find(',') != std::string::npos)
       throw UsageError("'" + text + "': a comma cannot stand here or in a file's name");
-    name += "," + part + "=" + (part == "body" || part == "rest" ? text : without_spaces(text));
+    const bool of_file = part.starts_with("body") || part == "rest";
+    name += "," + part + "=" + (of_file ? text : without_spaces(text));
   }
-  if (names_mesh(scene)) return read_model(name)->name;
+  if (names_mesh(scene)) return find_scene(name)->name;
   if (name != scene)
     throw UsageError("'" + name.substr(scene.size() + 1) +
                      "' goes with --scene mesh:FILE.obj, not with '" + scene + "'");

@@ -7,6 +7,7 @@
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
 #include "harness/scenes/meshes.h"
+#include "harness/scenes/scene_folder.h"
 
 namespace harness {
 
@@ -27,7 +28,14 @@ std::span<const SceneType> scene_types() {
 }
 
 std::shared_ptr<const SceneType> find_scene(std::string_view name) {
-  if (names_mesh(name)) return std::make_shared<const SceneType>(mesh_scene(std::string(name)));
+  static std::map<std::string, std::shared_ptr<const SceneType>> known;  // names have a hash
+  if (const bool mesh = names_mesh(name); mesh || names_folder(name)) {
+    const std::string text(name);
+    if (known.contains(text)) return known.at(text);
+    const auto type =
+        std::make_shared<const SceneType>(mesh ? mesh_scene(text) : folder_scene(text));
+    return known[type->name] = type;
+  }
   for (const SceneType& type : scene_types()) {
     if (type.name == name) return {std::shared_ptr<const SceneType>(), &type};  // static
   }
@@ -37,7 +45,7 @@ std::shared_ptr<const SceneType> find_scene(std::string_view name) {
 std::vector<std::string> scene_kinds() {
   std::vector<std::string> kinds;
   for (const SceneType& type : scene_types()) {
-    if (!*type.like) kinds.emplace_back(type.name);
+    if (type.like.empty()) kinds.emplace_back(type.name);
   }
   return kinds;
 }

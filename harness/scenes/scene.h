@@ -48,7 +48,7 @@ struct Scene {
   bool staggered = true;
   // Vertices whose sag a result states.
   struct Mark {
-    const char* name;
+    std::string name;
     int vertex;
     double height;  // m, at which it would hang if nothing stretched
   };
@@ -66,7 +66,7 @@ struct SceneType {
   std::function<std::pair<int, int>(const SceneParameters& complete)> counts;
   // Positions at a time (s) where the motion is known exactly: errors need no reference then.
   inextensible::Positions (*exact)(const SceneParameters& complete, double time) = nullptr;
-  const char* like = "";  // the scene whose tuned settings it takes; empty: its own
+  std::string like = {};  // the scene whose tuned settings it takes; empty: its own
   // Straight from a pinned end, with nothing in its way: the links of a pendulum in a plane, whose
   // smooth motion scenes/pendulum.h integrates in angles.
   bool pendulum = false;
@@ -74,12 +74,14 @@ struct SceneType {
   // A hash of the files that the scene is made of. Empty: the name says all.
   std::string identity = {};
   std::string description = {};  // of a mesh, in lines: what was read, and what becomes of it
+  std::string reference = {};    // the .npz file of its reference; empty: it is looked for by name
 
-  std::string kind() const { return *like ? like : name; }
+  std::string kind() const { return like.empty() ? name : like; }
 };
 
 std::span<const SceneType> scene_types();
-// Also "mesh:...", which throws UsageError for files that it cannot use. Null: no such scene.
+// Also "mesh:..." and "folder:..." (scene_folder.h), which throw UsageError for files that they
+// cannot use; the files are read once. Null: no such scene.
 std::shared_ptr<const SceneType> find_scene(std::string_view name);
 std::vector<std::string> scene_kinds();  // of all scenes, each once
 
@@ -93,16 +95,18 @@ Scene built_scene(std::string_view name, const SceneParameters& given = {});
 //
 // Warp and weft are the sides of quads. Two triangles that make a good quad are taken as one;
 // springs alone hold the remaining triangles, as a net of inextensible triangles would not bend. A
-// body is a closed mesh, the floor a height. Lines are ropes. Pins and loads are conditions joined
-// by "and" and "or": "y > 1.2", "x <= 0", "v12" (a vertex of the file) and "near(0:1:0)" (the
-// nearest one).
+// body is a closed mesh, the floor a height. Lines are ropes. With triangles=midpoints each
+// triangle keeps its shape, and bends against its neighbours (cloth_mesh.h). Pins and loads are
+// conditions joined by "and" and "or": "y > 1.2", "x <= 0", "v12" (a vertex of the file) and
+// "near(0:1:0)" (the nearest one).
 
 bool names_mesh(std::string_view scene);  // "mesh:..."
 
 // The scene's name with those parts that are not empty, in the file's unit, and with the hash of
-// all that it is made of: pins, load (where a weight hangs), body (a file), floor (a height), rest
-// (a file with the unstretched shape), weld (corners this close are one). Throws UsageError for
-// other parts, and for any where the scene is not a mesh.
+// all that it is made of: pins, load (where a weight hangs), body (files, between semicolons),
+// body_then (where it is later, the same), thickness (of an open body), floor (a height), rest (a
+// file with the unstretched shape), weld (corners this close are one), triangles. Throws UsageError
+// for other parts, and for any where the scene is not a mesh.
 std::string with_mesh_parts(const std::string& scene,
                             const std::vector<std::pair<std::string, std::string>>& parts);
 

@@ -1,4 +1,4 @@
-"""Draws a stability result: the matrix of hard cases and solvers, and the largest stable steps beneath it."""
+"""Draws a stability result: the matrix of hard cases and solvers."""
 
 import itertools
 import math
@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from parts.result import Figures, Json, Result
-from parts.sheet import Sheet, make_sheet
-from parts.style import ALARM, Styles, styles_for
+from parts.sheet import make_sheet
+from parts.style import ALARM, styles_for
 from parts.words import clean, inches, shorten
 
 # From the mildest outcome to the gravest: letter, meaning, and a colour that differs in lightness too, for gray prints.
@@ -23,49 +23,36 @@ CELL_WIDTH, CELL_HEIGHT = 1.0, 0.22
 LABEL_WIDTH, NAME_WIDTH = 1.75, 2.6  # of rows' and of solvers' names
 SLOPE = math.radians(32)  # of solvers' names
 TEXT_SIZE, CELL_SIZE = 8, 6.8
-STEPS_TITLE = "largest step (s) at which one simulated second is survived, strain limit 1 %"
 TOLD_GAIN = 0.05  # energy gained, over its scale, from which on a cell says so
 
 
 def figures_of(result: Result) -> Figures:
-    document = result.document
-    return [("matrix", draw, result)] if document.get("matrix") or document.get("largest_steps") else []
+    return [("matrix", draw, result)] if result.document.get("matrix") else []
 
 
 def draw(result: Result) -> Figure:
-    cells, steps = result.document["matrix"], result.document["largest_steps"]
-    styles = styles_for([entry["solver"] for entry in cells + steps], result)
+    cells = result.document["matrix"]
+    styles = styles_for([cell["solver"] for cell in cells], result)
     rows = list(dict.fromkeys(cell["row"] for cell in cells))
-    scenes = list(dict.fromkeys(entry["scene"] for entry in steps))
     names = [shorten(style.label.split(" (")[0], NAME_WIDTH, TEXT_SIZE) for style in styles.values()]
     # Names of the last columns run out at the right edge.
     ends = [CELL_WIDTH * (number + 0.5) + inches(name, TEXT_SIZE) * math.cos(SLOPE) + 0.2 for number, name in enumerate(names)]
-    width = LABEL_WIDTH + max(CELL_WIDTH * len(styles) + 0.3, *ends, inches(STEPS_TITLE, TEXT_SIZE, "bold") + 0.2)
-    beneath = 0.45 + CELL_HEIGHT * len(scenes) if scenes else 0
+    width = LABEL_WIDTH + max(CELL_WIDTH * len(styles) + 0.3, *ends)
     header = math.sin(SLOPE) * max(inches(name, TEXT_SIZE) for name in names)
     sheet = make_sheet(result, "Hard cases: where each solver breaks", [_caption(cells)], width,
-                       header + CELL_HEIGHT * len(rows) + beneath)
-    matrix = _grid(sheet, sheet.bottom - 0.35 + beneath, names, rows)
-    for place in itertools.product(range(len(names)), range(len(rows))):
-        solver, row = list(styles)[place[0]], rows[place[1]]
-        if here := [cell for cell in cells if (cell["row"], cell["solver"]) == (row, solver)]:
-            _draw_outcomes(matrix, *place, here)
-    if scenes:
-        largest = _grid(sheet, sheet.bottom - 0.35, [""] * len(names), scenes)
-        largest.set_title(STEPS_TITLE, fontsize=TEXT_SIZE, fontweight="bold", loc="left")
-        _draw_steps(largest, styles, scenes, steps)
-    return sheet.figure
-
-
-def _grid(sheet: Sheet, bottom: float, names: list[str], rows: list[str]) -> Axes:
-    axes = sheet.axes(LABEL_WIDTH, bottom, CELL_WIDTH * len(names), CELL_HEIGHT * len(rows))
+                       header + CELL_HEIGHT * len(rows))
+    axes = sheet.axes(LABEL_WIDTH, sheet.bottom - 0.35, CELL_WIDTH * len(names), CELL_HEIGHT * len(rows))
     axes.set(xlim=(0, len(names)), ylim=(len(rows), 0))
     axes.spines[:].set_visible(False)
     axes.xaxis.tick_top()
     axes.tick_params(length=0, labelsize=TEXT_SIZE)
     axes.set_xticks([k + 0.5 for k in range(len(names))], names, rotation=math.degrees(SLOPE), ha="left", rotation_mode="anchor")
     axes.set_yticks([k + 0.5 for k in range(len(rows))], [shorten(clean(row), LABEL_WIDTH - 0.35, TEXT_SIZE) for row in rows])
-    return axes
+    for place in itertools.product(range(len(names)), range(len(rows))):
+        solver, row = list(styles)[place[0]], rows[place[1]]
+        if here := [cell for cell in cells if (cell["row"], cell["solver"]) == (row, solver)]:
+            _draw_outcomes(axes, *place, here)
+    return sheet.figure
 
 
 def _draw_cell(axes: Axes, column: int, row: int, text: str, face: object, dark: bool = False, framed: bool = False) -> None:
@@ -85,17 +72,6 @@ def _draw_outcomes(axes: Axes, column: int, row: int, cells: list[Json]) -> None
     unexpected = not all(cell["as_expected"] for cell in cells)
     worst = list(counts)[-1]
     _draw_cell(axes, column, row, text + (" !" if unexpected else ""), OUTCOMES[worst][2], worst in DARK, unexpected)
-
-
-def _draw_steps(axes: Axes, solvers: Styles, scenes: list[str], steps: list[Json]) -> None:
-    known = [math.log(entry["step"]) for entry in steps if entry["step"]]
-    low, high = min(known, default=0), max(known, default=1)
-    for entry in steps:
-        step = entry["step"]
-        size = (math.log(step) - low) / (high - low) if step and high > low else 0.0
-        shade = 0.55 + 0.45 * size if step else 0.45  # the darker the smaller the step
-        text = "none" if not step else f"1/{1 / step:.0f}" if step < 1 else f"{step:g}"
-        _draw_cell(axes, list(solvers).index(entry["solver"]), scenes.index(entry["scene"]), text, (shade, shade, min(1.0, shade + 0.08)))
 
 
 def _caption(cells: list[Json]) -> str:

@@ -2,8 +2,6 @@
 // Shared by all parts: the data, and elements whose text is never read as markup.
 const data = JSON.parse(document.getElementById("data").textContent);
 const points = data.points.map((row) => Object.fromEntries(data.columns.map((name, index) => [name, row[index]])));
-const hidden = new Set();  // solvers
-const onHide = [];         // called when it changes
 
 function element(name, properties = {}, ...children) {
   const made = document.createElement(name);

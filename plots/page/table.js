@@ -1,19 +1,30 @@
-// All points, sorted by column and filtered by words.
+// The points, of one contest and place or all, without hidden solvers, filtered by words and sorted by column.
 (() => {
-  const table = document.getElementById("points-table");
+  const part = (name) => document.getElementById(`points-${name}`);
+  const table = part("table"), contest = part("contest"), place = part("place"), filter = part("filter"), best = part("best");
   if (!table) return;
-  const filter = document.getElementById("points-filter"), best = document.getElementById("points-best");
-  const count = document.getElementById("points-count"), more = document.getElementById("points-more");
-  const portion = 100;
-  let limit = portion, key = "seconds", down = false;
+  const portion = 100, hidden = new Set();
+  let limit = portion, key = "seconds", down = false, least = 1;
+
+  // Best points of a sweep of one scene; its places are its limits or sizes.
+  const contests = new Map();
+  for (const point of points) {
+    point.axis = point.sweep === "strain" ? percent(point.limit) : `${point.vertices} vertices`;
+    if (point.sweep === "step" || !point.best || point.seconds === null) continue;
+    const fixed = point.sweep === "strain" ? `${point.vertices} vertices` : percent(point.limit);
+    point.contest = `${words(point.scene)} over ${point.sweep}, ${fixed} (${data.files[point.file].name})`;
+    contests.set(point.contest, [...contests.get(point.contest) ?? [], point]);
+  }
+  for (const name of contests.keys()) contest.append(element("option", {value: name}, name));
 
   const columns = [["Solver", "solver", (p) => data.labels[p.solver]], ["Scene", "scene", (p) => words(p.scene)], ["Sweep", "sweep", (p) => p.sweep],
     ["Vertices", "vertices", (p) => p.vertices], ["Limit", "limit", (p) => percent(p.limit)], ["Step", "step", (p) => stepText(p.step)],
-    ["Status", "status", (p) => words(p.status)], ["Time", "seconds", (p) => timeText(p.seconds)], ["Strain", "strain", (p) => percent(p.strain)],
+    ["Status", "status", (p) => words(p.status)], ["Time", "seconds", (p) => timeText(p.seconds)],
+    ["Times the first", "seconds", (p) => p.seconds === null ? "" : (p.seconds / least).toPrecision(3)], ["Strain", "strain", (p) => percent(p.strain)],
     ["Delivered", "delivered", (p) => percent(p.delivered)], ["Error", "error", (p) => p.error === null ? "" : p.error.toPrecision(3)],
     ["Energy gained", "energy", (p) => p.energy === null ? "" : p.energy.toPrecision(2)], ["Iterations", "iterations", (p) => p.iterations ?? ""],
     ["File", "file", (p) => data.files[p.file].name]];
-  const text = points.map((p) => `${p.solver} ${data.labels[p.solver]} ${p.id} ${p.sweep} ${p.status} ${data.files[p.file].name}`.toLowerCase());
+  const text = new Map(points.map((p) => [p, `${p.solver} ${data.labels[p.solver]} ${p.id} ${p.sweep} ${p.status} ${data.files[p.file].name}`.toLowerCase()]));
 
   const head = table.tHead.rows[0];
   for (const [title, name] of columns) {
@@ -23,24 +34,43 @@
   }
   head.append(element("th", {scope: "col"}, "Repeat"));
 
+  // The places and solvers of the contest that was chosen.
+  function choose(wanted = place.value) {
+    const here = contests.get(contest.value) ?? points, places = contests.has(contest.value) ? [...new Set(here.map((point) => point.axis))] : [];
+    place.replaceChildren(element("option", {value: ""}, "all"), ...places.map((name) => element("option", {value: name}, name)));
+    place.value = places.includes(wanted) ? wanted : "";
+    const names = new Set(here.map((point) => point.solver)), box = part("solvers");
+    box.replaceChildren(box.firstElementChild);
+    for (const name of Object.keys(data.labels).filter((name) => names.has(name))) {
+      const tick = element("input", {type: "checkbox", checked: !hidden.has(name)});
+      tick.addEventListener("change", () => { if (tick.checked) hidden.delete(name); else hidden.add(name); draw(); });
+      box.append(element("label", {}, tick, data.labels[name]));
+    }
+    draw();
+  }
+
   function draw() {
     const wanted = filter.value.toLowerCase().split(/\s+/).filter(Boolean);
-    const kept = points.filter((point, index) => (!best.checked || point.best) && !hidden.has(point.solver) &&
-      wanted.every((word) => text[index].includes(word)));
+    const kept = (contests.get(contest.value) ?? points).filter((point) => (!best.checked || point.best) && !hidden.has(point.solver) &&
+      (!place.value || point.axis === place.value) && wanted.every((word) => text.get(point).includes(word)));
+    least = Math.min(...kept.map((point) => point.seconds ?? Infinity));
     const sign = down ? -1 : 1;
     kept.sort((a, b) => a[key] === b[key] ? 0 : a[key] === null ? 1 : b[key] === null ? -1 : sign * (a[key] < b[key] ? -1 : 1));
     columns.forEach(([, name], index) => head.cells[index].setAttribute("aria-sort", name === key ? (down ? "descending" : "ascending") : "none"));
     table.tBodies[0].replaceChildren(...kept.slice(0, limit).map((point) => {
-      const cells = columns.map(([, , show], index) => element("td", {className: index > 2 && index < 13 && index !== 6 ? "number" : ""}, String(show(point))));
-      return element("tr", {title: story(point)}, ...cells, element("td", {}, repeatButton(count, point)));
+      const cells = columns.map(([, , show], index) => element("td", {className: index > 2 && index < 14 && index !== 6 ? "number" : ""}, String(show(point))));
+      return element("tr", {title: story(point)}, ...cells, element("td", {}, repeatButton(part("command"), point)));
     }));
-    count.textContent = `${kept.length} of ${points.length} points`;
-    more.hidden = kept.length <= limit;
+    part("count").textContent = `${kept.length} of ${points.length} points`;
+    part("more").hidden = kept.length <= limit;
   }
 
+  contest.addEventListener("change", () => choose());
+  for (const control of [place, best]) control.addEventListener("change", draw);
   filter.addEventListener("input", () => { limit = portion; draw(); });
-  best.addEventListener("change", draw);
-  more.addEventListener("click", () => { limit += 5 * portion; draw(); });
-  onHide.push(draw);
-  draw();
+  part("more").addEventListener("click", () => { limit += 5 * portion; draw(); });
+  // Opens on the largest drape over strain at 1 %, or the first contest.
+  const size = (name) => name.startsWith("drape over strain") ? contests.get(name)[0].vertices : 0;
+  contest.value = [...contests.keys()].reduce((a, b) => size(b) > size(a) ? b : a, [...contests.keys()][0] ?? "");
+  choose("1 %");
 })();

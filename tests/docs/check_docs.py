@@ -313,7 +313,7 @@ def pictures() -> list[str]:
     errors = []
     for picture in sorted((ROOT / "plots/figures").glob("*.svg")):
         drawn = re.search(r"commit ([0-9a-f]{12})", read(picture))
-        sweep = re.sub(r"-(figure|plane|budget|lead).*", "-", picture.stem)  # pieces of which it may be drawn from
+        sweep = re.sub(r"-(figure|plane).*", "-", picture.stem)  # pieces of which it may be drawn from
         of = [commit for file, commit in commits.items() if picture.stem.startswith(file.stem + "-") or file.stem.startswith(sweep)]
         if not of:
             errors.append(f"plots/figures/{picture.name} is of no result in results/")

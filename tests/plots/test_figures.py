@@ -34,8 +34,6 @@ def renamed(result: Json, name: str) -> Json:
         made |= {"scene": name, "solver": f"{name}{made['solver']}", "contestant": f"{name}{made['contestant']}", "status_detail": name}
     for cell in result.get("matrix", []):
         cell |= {"row": f"{name}{cell['row']}", "case": name, "solver": f"{name}{cell['solver']}"}
-    for entry in result.get("largest_steps", []):
-        entry |= {"scene": name, "solver": f"{name}{entry['solver']}"}
     result["context"] |= {"cpu_model": name, "host_name": name, "date": name}
     result["context"]["build"]["git"] = name
     return result
@@ -84,7 +82,7 @@ def test_cost_over_strain(pictures: dict) -> None:
 
 
 def test_the_fastest_run_of_any_motion_and_of_motion_that_is_right(pictures: dict) -> None:
-    assert list(pictures["two questions"]) == ["figure4a", "plane-chain", "budget-chain"]
+    assert list(pictures["two questions"]) == ["figure4a", "plane-chain"]
     chosen = [{line.get_color(): line.get_ydata()[-1] for line in curves(axes)} for axes in panels(pictures["two questions"]["figure4a"])]
     assert (chosen[0][GREEN], chosen[1][GREEN]) == (0.1, 0.4)
 
@@ -121,15 +119,6 @@ def test_the_noise_of_a_pair_is_a_bar_and_the_second_no_curve(make, name: str) -
     assert high / low == pytest.approx(np.exp(0.2))
 
 
-# ---- the program's views --------------------------------------------------------------------------------------------
-
-def test_each_method_has_a_mark_where_it_first_reaches_a_limit(pictures: dict) -> None:
-    budget = pictures["two questions"]["budget-chain"].axes[0]
-    rows = [label.get_text() for label in budget.get_yticklabels()]
-    marked = {(rows[round(line.get_ydata()[0])], line.get_xdata()[0]) for line in budget.lines if line.get_marker() == "o"}
-    assert marked == {("fast projection", 2), ("fast projection", 8), ("SHAKE", 8), ("RATTLE (SHAKE with velocities)", 1)}
-
-
 # ---- step sweeps ----------------------------------------------------------------------------------------------------
 
 def test_time_against_error(pictures: dict) -> None:
@@ -155,10 +144,9 @@ def test_residuals_of_those_that_have_one(solvers: tuple[str, ...], names: list[
 
 def test_matrix_of_hard_cases(pictures: dict) -> None:
     figure = pictures["stability"]["matrix"]
-    matrix, steps = figure.axes
+    (matrix,) = figure.axes
     assert [label.get_text() for label in matrix.get_xticklabels()] == ["SHAKE", "fast projection"]
-    assert [label.get_text() for axes in figure.axes for label in axes.get_yticklabels()] == ["Q1", "whip", "chain of 20"]
-    assert [text.get_text() for text in steps.texts] == ["1/4", "none"]
+    assert [label.get_text() for axes in figure.axes for label in axes.get_yticklabels()] == ["Q1", "whip"]
     framed = {text.get_text(): patch.get_linewidth() == 2 for text, patch in zip(matrix.texts, matrix.patches)}
     assert framed == {"R  E0.6": False, "S1 D1 !": True, "S": False}, "a thick frame: not as expected"
 

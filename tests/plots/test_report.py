@@ -86,7 +86,7 @@ def complaints(browser: Any) -> list[str]:
 def test_every_part_is_there_and_nothing_complains(browser: Any, tmp_path: Path) -> None:
     opened(browser, tmp_path, [strain_sweep(), resolution_sweep(), stability()])
     assert complaints(browser) == []
-    for name in ("findings", "contest", "points", "figures", "claims", "machine"):
+    for name in ("findings", "points", "figures", "claims", "machine"):
         assert len(find(browser, f"section#{name}")) == 1, name
     assert find(browser, "p.answer")[0].text == "Drape of 961 vertices, over strain: C is first. D."
     pictures = find(browser, "figure img")
@@ -101,21 +101,20 @@ def test_every_part_is_there_and_nothing_complains(browser: Any, tmp_path: Path)
 
 def test_ranks_follow_when_a_solver_is_hidden_and_tell_the_command_of_a_point(page: Any) -> None:
     def ranks() -> list[str]:
-        return [row.text for row in find(page, "#contest-ranks tbody tr td:nth-child(2)")]
+        return [row.text for row in find(page, "#points-table tbody td:first-child")]
 
     assert ranks()[:2] == ["fast projection", "SHAKE"]
-    story = find(page, "#contest-ranks tbody tr")[0].get_attribute("title")
+    story = find(page, "#points-table tbody tr")[0].get_attribute("title")
     assert "chain/" in story and "9 runs" in story
-    find(page, "#contest-ranks tbody button")[0].click()
+    find(page, "#points-table tbody button")[0].click()
     page.execute_async_script("setTimeout(arguments[0], 200)")  # the clipboard answers later
-    assert "./bench --sweep strain --reps 9 --filter '^chain/" in find(page, "#contest-detail")[0].text
-    find(page, "#contest-solvers input")[[label.text for label in find(page, "#contest-solvers label")].index("fast projection")].click()
-    assert ranks()[0] == "SHAKE"
-    assert not any("fast projection" == row.text for row in find(page, "#points-table tbody td:first-child"))
+    assert "./bench --sweep strain --reps 9 --filter '^chain/" in find(page, "#points-command")[0].text
+    find(page, "#points-solvers input")[[label.text for label in find(page, "#points-solvers label")].index("fast projection")].click()
+    assert ranks()[0] == "SHAKE" and "fast projection" not in ranks()
 
 
 def test_the_table_filters_and_sorts(page: Any) -> None:
-    find(page, "#points-best")[0].click()
+    find(page, "#points-contest option")[0].click()
     find(page, "#points-filter")[0].send_keys("jacobi diverged")
     rows = find(page, "#points-table tbody tr")
     assert len(rows) == 1 and "diverged" in rows[0].text

@@ -80,15 +80,4 @@ inline void strain_curve(std::vector<json>& points, const std::string& scene,
                            at_ten_percent * std::pow(limit / 0.1, exponent)));
 }
 
-// A step sweep: the error is the step, the time follows error^exponent.
-inline void error_curve(std::vector<json>& points, const std::string& solver, double at_ten_percent,
-                        double exponent, double gap = 1e-9) {
-  for (const double error : limits) {
-    json p = point("chain", "step", solver, 0.001, 80, error,
-                   at_ten_percent * std::pow(error / 0.1, exponent));
-    p["error"].update({{"trajectory", error}, {"gap", gap}});
-    points.push_back(p);
-  }
-}
-
 }  // namespace harness

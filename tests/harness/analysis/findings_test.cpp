@@ -189,20 +189,5 @@ TEST(Budget, HoldsTheTightestStrainWhoseMotionIsRightWithinAFrame) {
   EXPECT_DOUBLE_EQ(yarns.at(1)->frame_seconds, 4e-3);
 }
 
-TEST(Budget, ClimbsStairsOfRunsThatReachMoreThanAllFasterOnes) {
-  const json result = document({
-      framed(run("yarn_projection", 0.1, 0.02, 1, 0.01), 2e-3),
-      framed(run("yarn_projection", 0.1, 0.01, 2, 0.02), 3e-3),   // more error at the same limit
-      framed(run("yarn_projection", 0.01, 0.01, 2, 0.01), 4e-3),  // less strain
-      framed(run("yarn_projection", 0.1, 0.04, 1, 0.5), 1e-3),    // wrong, but the first
-      framed(run("yarn_projection", 0.001, 0.01, 2, 0.3), 5e-3),  // wrong, where others are right
-  });
-  const auto tables = budget_tables(result, {});
-  ASSERT_EQ(tables.at(0).rows.size(), 1u);
-  std::vector<double> frames;
-  for (const Reach& reach : tables[0].rows[0].stairs) frames.push_back(reach.frame_seconds);
-  EXPECT_EQ(frames, (std::vector<double>{1e-3, 2e-3, 4e-3}));
-}
-
 }  // namespace
 }  // namespace harness::analysis

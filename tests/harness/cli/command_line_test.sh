@@ -65,7 +65,7 @@ assert len({p["step"] for p in ok}) >= 4 and all(0 < p["error"]["trajectory"] < 
 assert [r["name"] for r in document["references"]] == ["chain-n80.json"]
 command = document["context"]["command"]
 assert "steps.json" in command and not any(word.startswith("/") for word in command)'
-bench claims steps.json --markdown - >claims.txt && [[ $(grep -c '^| C' claims.txt) == 16 ]] || fail "claims has no 16 rows"
+bench claims steps.json >claims.txt && [[ $(grep -c '^C[0-9]* (' claims.txt) == 16 ]] || fail "claims has no 16 rows"
 holds 'd = read("steps.json"); d["points"] = []; json.dump(d, open("nothing.json", "w"))'
 refused "is what a claim is about" claims nothing.json
 makes patch.json "${sweep[@]}" --scene patch --n 5 --limit 0.1,0.05  # not in the suite

@@ -21,7 +21,7 @@ FilmRun filmed(const std::string& scene, const SceneParameters& given, const Con
 }
 
 // Edges that shake between limits of 10 % bring energy back step by step. A body that moves does
-// work, so that sweeps do not judge energy there; a good run's energy is within what it can do.
+// work, so that energy is not judged there.
 TEST(Films, SayWhichRunsGainEnergy) {
   const FilmRun shaking =
       filmed("drape", {{"n", 15}}, {"fast_projection", "fast_projection"}, 0.1, 1.0 / 1600);

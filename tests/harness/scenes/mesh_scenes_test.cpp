@@ -13,6 +13,7 @@
 
 #include "harness/judge/mechanics.h"
 #include "harness/scenes/scene.h"
+#include "solvers/problem/triangle_collider.h"
 #include "solvers/registry.h"
 #include "support/refusal.h"
 #include "support/scenes.h"
@@ -320,6 +321,92 @@ TEST(MeshScene, BeginsAwayFromItsRestShape) {
               (void)find_scene("mesh:" + other + ",pins=v1,rest=" + flat);
             }).find("other faces or lines"),
             std::string::npos);
+}
+
+// A grid of right triangles, n sides long, rolled onto a cylinder of this radius.
+std::string rolled(int n, double radius) {
+  std::ostringstream text;
+  text.precision(17);
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; j <= n; ++j) {
+      const double turned = j / (n * radius);
+      text << "v " << radius * std::sin(turned) << ' ' << radius * (std::cos(turned) - 1) << ' '
+           << static_cast<double>(i) / n << '\n';
+    }
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const int a = i * (n + 1) + j + 1, b = a + 1, c = b + n + 1, d = a + n + 1;
+      text << "f " << a << ' ' << b << ' ' << c << "\nf " << a << ' ' << c << ' ' << d << '\n';
+    }
+  return text.str();
+}
+
+// Flat at rest, a cylinder has the energy B / (2 radius^2) an area; and its sides keep their
+// length.
+TEST(MeshScene, TrianglesByMidpointsRollWithoutStretching) {
+  const double rigidity = 0.01, radius = 1.5;
+  const std::string flat = file_with("flat.obj", rolled(24, 1e4)),
+                    bent = file_with("bent.obj", rolled(24, radius));
+  const Scene scene = built_scene("mesh:" + bent + ",pins=v1,rest=" + flat + ",triangles=midpoints",
+                                  {{"bending", rigidity}});
+  const inextensible::Problem& problem = *scene.problem;
+  EXPECT_FALSE(problem.shear());
+  EXPECT_LT(strain_range(problem, scene.start.x).most, 1e-3);
+  EXPECT_NEAR(problem.total_mass(), 0.15, 1e-6);
+  const double energy = inextensible::bending_energy(problem.bending(), scene.start.x);
+  EXPECT_NEAR(energy, 0.5 * rigidity / (radius * radius), 0.1 * energy);
+}
+
+// Held by one side it hangs down and sways, whereas triangles that keep their sides would stay.
+TEST(MeshScene, TrianglesByMidpointsDoNotLock) {
+  const Scene scene = built_scene("mesh:" + file_with("sheet.obj", rolled(6, 1e4)) +
+                                  ",pins=x<0.01,triangles=midpoints");
+  const int constraints = scene.problem->constraints();
+  EXPECT_LT(constraints, 3 * scene.problem->vertices() - 6 * 6);
+  inextensible::State state = scene.start;
+  const auto stepper = inextensible::make_stepper("fast_projection", scene.problem, {0.01});
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(stepper->advance(state, 0.005));
+  EXPECT_LT(strain_range(*scene.problem, state.x).most, 0.01 + 1e-9);
+  EXPECT_LT(state.x.row(1).minCoeff(), -0.5);
+}
+
+TEST(MeshScene, BodiesMayBeSeveralOpenAndMoving) {
+  const auto box = [](const char* name, double x, double turn) {
+    std::ostringstream text;
+    text.precision(17);
+    for (int i = 0; i < 8; ++i) {
+      const double px = x + (i & 1 ? 0.2 : -0.2), pz = i & 4 ? 0.2 : -0.2;
+      text << "v " << std::cos(turn) * px + std::sin(turn) * pz << ' ' << (i & 2 ? -1.1 : -1.4)
+           << ' ' << std::cos(turn) * pz - std::sin(turn) * px << '\n';
+    }
+    text << "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+    return file_with(name, text.str());
+  };
+  const std::string cloth = "mesh:" + file_with("above.obj", square(5)) + ",pins=y>-0.01";
+  const std::string one = box("one.obj", 0, 0), two = box("two.obj", 1, 0),
+                    later = box("later.obj", 0, 1);
+  const Scene both = built_scene(cloth + ",body=" + one + ";" + two);
+  EXPECT_EQ(both.problem->collider()->triangles(), 24);
+  EXPECT_NE(refusal_of([&] { find_scene(cloth + ",body=" + one + ";" + later); }).find("apart"),
+            std::string::npos);
+  const Scene moving = built_scene(cloth + ",body=" + one + ",body_then=" + later,
+                                   {{"duration", 2}, {"scale", 0.5}});
+  const inextensible::Pose half = moving.problem->body_motion()(1);
+  EXPECT_NEAR(half.turn(0, 2), std::sin(0.5), 1e-9);
+  EXPECT_LT(half.translation.norm(), 1e-9);
+  EXPECT_NE(refusal_of([&] {
+              find_scene(cloth + ",body=" + one + ",body_then=" + two + ";" +
+                         file_with("bent.obj", rolled(2, 1)));
+            }).find("vertices"),
+            std::string::npos);
+  // A sheet below the cloth, which gets a back.
+  const std::string sheet =
+      file_with("sheet.obj", "v -1 -1.2 -1\nv -1 -1.2 1\nv 1 -1.2 1\nv 1 -1.2 -1\nf 1 2 3 4\n");
+  EXPECT_NE(refusal_of([&] { find_scene(cloth + ",body=" + sheet); }), "");
+  const Scene open = built_scene(cloth + ",body=" + sheet + ",thickness=0.1");
+  const auto* body = dynamic_cast<const inextensible::TriangleCollider*>(open.problem->collider());
+  EXPECT_NEAR(body->nearest({0, -1.25, 0}).signed_distance, -0.05, 1e-12);
+  EXPECT_NEAR(body->nearest({0, -1.1, 0}).signed_distance, 0.1, 1e-12);
 }
 
 }  // namespace

@@ -70,6 +70,17 @@ const Fault faults[] = {
      [](const Step& s) {  // a twentieth of the velocity, however short the step is
        if (s.problem.vertices() == 8) s.x = (0.95 * s.x + 0.05 * s.x_start).eval();
      }},
+    {"drags_across", "motion in space", When::before,
+     [](const Step& s) {  // a hundredth of the velocity along z
+       if (s.problem.vertices() == 7)
+         s.x.row(2) = (0.99 * s.x.row(2) + 0.01 * s.x_start.row(2)).eval();
+     }},
+    {"remembers_refusals", "refusal", When::before,
+     [](const Step& s) {  // where positions overflowed, the next step is another one
+       static bool overflowed = false;
+       if (overflowed) s.x(0, s.x.cols() - 1) *= 1 + 1e-12;
+       overflowed = s.x.maxCoeff() > 1e200;
+     }},
     {"uncounts_work", "counters", When::corrected, [](const Step& s) { s.work.iterations -= 100; }},
     {"meddles", "permissible candidate", When::before,
      [](const Step& s) {

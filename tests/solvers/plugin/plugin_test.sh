@@ -60,7 +60,8 @@ tiny --solver 'symmetric_sweeps|gauss_seidel' --out figures/out.json >sweep.txt 
 grep -q 'could not be drawn' sweep.txt && fail "no figures: $(cat sweep.txt)"
 ls figures/*.svg >/dev/null || fail "no figures"
 "$bench" --plugin "$plugin" report figures/out.json --out page.html >report.txt 2>&1 || fail "a page of an installed bench: $(cat report.txt)"
-[[ -n $(find installed -name LICENSE) ]] || fail "the licence is not installed"
+[[ -n $(find installed -name LICENSE) && -n $(find installed -name NOTICE) ]] || fail "the license is not installed"
+[[ $("$bench" --version) == *MIT*'GPL, version 3 or later'* ]] || fail "--version does not name the licenses"
 
 # ---- Every verb of an installed bench ----
 tiny --solver fast_projection --no-plots --out small.json >sweep.txt 2>&1 || fail "a small sweep: $(cat sweep.txt)"
@@ -83,6 +84,8 @@ use() {
     compare) words=(small.json small.json) ;;
     baseline) words=(small.json --out baseline.json) ;;
     ab) words=("$bench" "$bench" --scene chain --solver fast_projection --filter 'strain:0.01/' --pairs 4 --sample-seconds 0.001) ;;
+    export) words=(--scene chain --out exported) ;;
+    judge) words=(exported exported/reference.npz) ;;
     tune) words=(--scene chain --solver icd --out tuned.json) ;;  # there already
     reference) words=(--profile pairs --scene chain) ;;           # there already
   esac

@@ -1,0 +1,168 @@
+// bench export and bench judge: scenes for other programs, and what these made of them.
+#include <algorithm>
+#include <filesystem>
+
+#include "harness/analysis/measured_point.h"
+#include "harness/cli/command.h"
+#include "harness/judge/trajectory.h"
+#include "harness/points/context.h"
+#include "harness/points/result_file.h"
+#include "harness/points/schema.h"
+#include "harness/run/measure_point.h"
+#include "harness/scenes/scene_folder.h"
+
+namespace harness {
+namespace {
+
+struct Export : SceneOptions {
+  std::string out;
+
+  void declare(const Command& command) {
+    SceneOptions::declare(command, "none");
+    command.option("--out", out, "a folder that does not exist yet", "FOLDER");
+    command.require({"--scene", "--out"});
+  }
+
+  int run() {
+    const auto type = checked_scene(name());
+    const SceneParameters parameters = complete_parameters();
+    std::error_code error;
+    if (std::filesystem::exists(out, error))
+      throw UsageError("--out '" + out + "' exists already; give another folder");
+    const auto reference = ReferenceFolder::usual()->find(type->name, parameters);
+    const std::string partial = out + ".partial";
+    std::filesystem::remove_all(partial, error);
+    if (!std::filesystem::create_directory(partial, error))
+      throw FileError(out, "make folder", error.message());
+    try {
+      nlohmann::json said = about(*type, parameters);
+      if (reference) said["reference"] = "reference.npz";
+      write_scene(partial, type->build(parameters), said);
+    } catch (const std::invalid_argument& impossible) {  // parameters that make no scene
+      std::filesystem::remove_all(partial, error);
+      throw UsageError(impossible.what());
+    }
+    if (reference) write_atomically(partial + "/reference.npz", npz_bytes(arrays_of(*reference)));
+    std::filesystem::rename(partial, out);
+    std::cout << out << ": " << type->counts(parameters).first << " vertices, "
+              << (reference ? reference_text(*reference) : "no reference (bench reference)")
+              << '\n';
+    return success;
+  }
+};
+
+struct JudgeVerb {
+  std::string scene, name, out;
+  Words files;
+  double rate = 0, seconds = 0, limit = 0;
+
+  void declare(const Command& command) {
+    command.option("folder", scene, "a scene that bench export wrote", "FOLDER");
+    command.option("trajectory", files, "one .npz or .pc2 file, or numbered .obj files",
+                   "FILE ...");
+    command.require({"folder", "trajectory"});
+    command.option("--fps", rate, "frames a second, where the file has no times", "N",
+                   Bounds::positive());
+    command.option("--seconds", seconds, "that the program took for the whole motion", "S",
+                   Bounds::positive());
+    command.option("--limit", limit, "strain limit that it claims; default: the tightest it keeps",
+                   "STRAIN", Bounds::strain());
+    command.option("--name", name, "in tables and figures: a-z, 0-9 and _; default: trajectory",
+                   "NAME");
+    command.option("--out", out, "a result file, for bench show and plot beside others", "FILE");
+  }
+
+  PointResult judged(const PointSpec& given, const Scene& built) const {
+    RunLimits limits{.interrupted = interrupted, .timed = false};
+    limits.references = ReferenceFolder::usual();
+    limits.scene = &built;
+    PointResult point = run_point(given, limits);
+    if (limit == 0) {  // the tightest of the usual limits that it keeps
+      PointSpec spec = given;
+      for (const double usual : {0.1, 0.05, 0.02, 0.01, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4})
+        if (point.measures.max_strain <= usual) spec.strain_limit = usual;
+      point = run_point(spec, limits);
+    }
+    static_cast<Samples&>(point) = {};
+    if (seconds > 0 && point.ok()) {
+      point.samples = {seconds / built.duration};
+      point.best = true;
+    }
+    return point;
+  }
+
+  static void print(const PointResult& point) {
+    const Measures& m = point.measures;
+    std::cout << "verdict: " << to_string(point.status)
+              << (point.detail.empty() ? "" : " (" + point.detail + ")") << '\n'
+              << "strain: " << analysis::percent(m.max_strain) << " largest, "
+              << analysis::percent(m.p99_strain) << " for 99 % of the edges\n"
+              << "error of the motion: ";
+    if (std::isnan(m.trajectory)) {
+      std::cout << "not known, " << m.unknown_because << '\n';
+    } else {
+      std::cout << analysis::percent(m.trajectory) << " at worst, "
+                << analysis::percent(m.trajectory_mean)
+                << " on average, until t = " << m.error_until << " s; over time:";
+      for (std::size_t k = 4; k < m.error_series.size(); k += 5)
+        std::cout << ' ' << analysis::percent(m.error_series[k].error) << " at "
+                  << m.error_series[k].time << " s" << (k + 5 < m.error_series.size() ? "," : "");
+      std::cout << '\n';
+    }
+    std::cout << "energy: " << number_text(m.energy_gain, 3)
+              << " of weight times size above the start's at most\n";
+  }
+
+  int run(const Words& typed) {
+    if (!names_folder(scene))
+      throw UsageError("'" + scene + "' is no scene that bench export wrote: no scene.json there");
+    if (name.empty()) name = "trajectory";
+    const auto type = find_scene(scene);
+    PointSpec spec;
+    spec.sweep = "strain";
+    spec.scene = type->name;
+    spec.scene_parameters = complete_parameters(*type, {});
+    spec.resolution = static_cast<int>(spec.scene_parameters.at(type->resolution));
+    std::tie(spec.vertices, spec.constraints) = type->counts(spec.scene_parameters);
+    spec.contestant = spec.solver = name;
+    const Scene built = type->build(spec.scene_parameters);
+    const auto trajectory = std::make_shared<const Trajectory>(read_trajectory(files, built, rate));
+    spec.step = trajectory->interval;
+    spec.strain_limit = limit > 0 ? limit : 0.1;
+    const std::string label = name + " (time as reported)";
+    try {
+      const inextensible::Backend rows[] = {playback(name.c_str(), label.c_str(), trajectory)};
+      inextensible::add_backends(rows);
+    } catch (const std::invalid_argument& error) {
+      throw UsageError(std::string("--name: ") + error.what());
+    }
+    const PointResult point = judged(spec, built);
+    print(point);
+    std::cout << worst_places(*trajectory, built);
+    if (!out.empty()) {
+      Suite suite;
+      suite.name = suite.profile = "judged";
+      SweepSpec& sweep = suite.sweeps.emplace_back();
+      sweep.sweep = spec.sweep;
+      sweep.scene = spec.scene;
+      sweep.contestants = {{name, name}};
+      sweep.limits = {point.spec.strain_limit};
+      sweep.resolutions = {spec.resolution};
+      sweep.coarsest = sweep.finest = spec.step;
+      nlohmann::json context = machine_context();
+      context["timed"] = seconds > 0;
+      context["selection"] = {{"solver", ""}, {"filter", ""}, {"exclude", ""}};
+      const auto document = result_document(context, suite, typed, true, {point});
+      check_result(document, out);
+      write_atomically(out, result_text(document));
+    }
+    return point.ok() ? success : unexpected_outcome;
+  }
+};
+
+}  // namespace
+
+Action export_verb(const Command& command) { return verb<Export>(command); }
+Action judge_verb(const Command& command) { return verb<JudgeVerb>(command); }
+
+}  // namespace harness
