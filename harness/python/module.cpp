@@ -124,7 +124,7 @@ PYBIND11_MODULE(inextensible, module) {
   py::class_<Scene>(module, "Scene")
       .def(py::init<const std::string&, const py::kwargs&>(), arg("name"))
       .def("judge", judge, arg("x"), arg("v") = py::none())
-      .def("__getattr__", [](const py::object& self, const char* name) {
+      .def("__getattr__", [](const py::object& self, const char* name) -> py::object {
         return scene_views(self.cast<const Scene&>().arrays.scene, self).attr(name);
       });
   py::class_<Solver>(module, "Solver")
