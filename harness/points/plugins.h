@@ -1,4 +1,4 @@
-// Methods from shared libraries (`bench --plugin FILE`, solvers/inextensible.h).
+// Methods from shared libraries and Python files (`bench --plugin FILE`, solvers/inextensible.h).
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -28,7 +28,7 @@ def told(error):
     return " ".join((where + traceback.format_exception_only(error)[-1]).split())
 
 
-def guarded(function, *arguments, **settings):
+def guarded(function, /, *arguments, **settings):
     """The function's result, or a text in one line: its own, or what it raised (SystemExit too)."""
     try:
         result = function(*arguments, **settings)
@@ -64,7 +64,7 @@ def row(solver):
         return permitted.index(value)
 
     kinds = ("step", "filter")  # as InextensibleKind
-    kind = getattr(solver, "kind", "step" if hasattr(solver, "step") else "filter")
+    kind = getattr(solver, "kind", "step" if hasattr(solver, "step") and not hasattr(solver, "filter") else "filter")
     number = place("kind", kind, kinds)
     if not callable(getattr(solver, kind, None)):
         raise TypeError(f"{solver.__name__} has no method {kind}(self, step)")

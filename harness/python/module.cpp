@@ -2,6 +2,7 @@
 #include <pybind11/stl.h>
 
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -25,59 +26,41 @@ Positions positions_of(const Array& array, int vertices) {
   return Eigen::Map<const Positions>(array.data(), 3, vertices);
 }
 
-struct HeldScene {
-  explicit HeldScene(harness::Scene built) : scene(std::move(built)) {
+harness::Scene built(const std::string& name, const py::kwargs& parameters) {
+  const auto type = harness::find_scene(name);
+  if (!type) throw harness::unknown_name("scene", name, names_of(harness::scene_types()));
+  harness::SceneParameters given;
+  for (const auto& [key, value] : parameters)
+    given[py::str(key)] = py::float_(py::reinterpret_borrow<py::object>(value));
+  return type->build(complete_parameters(*type, given));
+}
+
+struct Scene {
+  Scene(const std::string& name, const py::kwargs& parameters) : scene(built(name, parameters)) {
     arrays.scene.x = scene.start.x.data();
     arrays.scene.v = scene.start.v.data();
   }
+  const Problem& problem() const { return *scene.problem; }
+  Positions positions(const Array& array) const {
+    return positions_of(array, problem().vertices());
+  }
+
   harness::Scene scene;
   SceneArrays arrays{*scene.problem, {}, Along::edges};
 };
 
-class Scene {
- public:
-  Scene(const std::string& name, const py::kwargs& parameters) {
-    const auto type = harness::find_scene(name);
-    if (!type) {
-      std::vector<std::string> known;
-      for (const auto& scene : harness::scene_types()) known.push_back(scene.name);
-      throw harness::unknown_name("scene", name, known);
-    }
-    harness::SceneParameters given;
-    for (const auto& [key, value] : parameters)
-      given[py::str(key)] = py::float_(py::reinterpret_borrow<py::object>(value));
-    held_ = std::make_shared<HeldScene>(type->build(complete_parameters(*type, given)));
-    // Arrays keep what they are views of.
-    using Held = std::shared_ptr<HeldScene>;
-    views_ =
-        scene_views(held_->arrays.scene,
-                    py::capsule(new Held(held_), [](void* p) { delete static_cast<Held*>(p); }));
-  }
-
-  py::object attribute(const std::string& name) const { return views_.attr(name.c_str()); }
-  const harness::Scene& scene() const { return held_->scene; }
-  int vertices() const { return scene().problem->vertices(); }
-
-  // What the judge of bench reads off positions and velocities.
-  py::dict judge(const Array& x, const py::object& v) const {
-    const Problem& problem = *scene().problem;
-    const Positions at = positions_of(x, vertices());
-    const harness::StrainRange strain = harness::strain_range(problem, at);
-    py::dict figures;
-    figures["strain"] = strain.most;
-    figures["stretch"] = strain.stretch;
-    figures["edge"] = strain.edge;
-    figures["potential_energy"] = potential_energy(problem, at);
-    if (!v.is_none())
-      figures["kinetic_energy"] =
-          kinetic_energy(problem, positions_of(v.cast<Array>(), vertices()));
-    return figures;
-  }
-
- private:
-  std::shared_ptr<HeldScene> held_;
-  py::object views_;
-};
+// What the judge of bench reads off positions and velocities.
+py::dict judge(const Scene& scene, const Array& x, const std::optional<Array>& v) {
+  const Positions at = scene.positions(x);
+  const harness::StrainRange strain = harness::strain_range(scene.problem(), at);
+  py::dict figures;
+  figures["strain"] = strain.most;
+  figures["stretch"] = strain.stretch;
+  figures["edge"] = strain.edge;
+  figures["potential_energy"] = potential_energy(scene.problem(), at);
+  if (v) figures["kinetic_energy"] = kinetic_energy(scene.problem(), scene.positions(*v));
+  return figures;
+}
 
 // A solver with a state of its own, which begins where bench begins: some methods half a step back.
 class Solver {
@@ -85,33 +68,34 @@ class Solver {
   Solver(const Scene& scene, const std::string& name, double strain_limit, std::uint64_t seed,
          const py::kwargs& settings)
       : scene_(scene),
-        options_{strain_limit, seed, settings.cast<Settings>(), &scene.scene().start},
-        state_(scene.scene().start),
-        stepper_(make_stepper(name, scene_.scene().problem, options_)),
-        filter_(make_velocity_filter(name, *scene_.scene().problem, options_)),
+        state_(scene.scene.start),
+        options_{strain_limit, seed, settings.cast<Settings>(), &state_},
+        stepper_(make_stepper(name, scene.scene.problem, options_)),
+        filter_(make_velocity_filter(name, scene.problem(), options_)),
         backend_(*find_backend(name)) {}
 
   void step(double h) {
     if (!(h > 0)) throw std::invalid_argument("a step must be longer than 0 s");
-    if (!begun_) state_ = harness::start_of(scene_.scene(), backend_, h);
+    if (!begun_ && scene_.scene.staggered)
+      state_ = harness::start_from(scene_.problem(), state_, backend_, h);
     begun_ = true;
     check(stepper_->advance(state_, h));
   }
 
   py::array project(const Array& x_start, const Array& candidate, double h) {
     if (!filter_) throw std::invalid_argument("this solver is a time step of its own, no filter");
-    Positions x = positions_of(candidate, scene_.vertices());
-    check(filter_->apply(positions_of(x_start, scene_.vertices()), h, x, work_));
-    return py::array_t<double>({scene_.vertices(), 3}, x.data());
+    Positions x = scene_.positions(candidate);
+    check(filter_->apply(scene_.positions(x_start), h, x, work_));
+    return py::array_t<double>({x.cols(), x.rows()}, x.data());
   }
 
   // A view, until the next step: self is this.
   static py::object view_of(Positions State::*part, const py::object& self) {
     auto& solver = self.cast<Solver&>();
-    return view((solver.state_.*part).data(), {solver.scene_.vertices(), 3}, true, self);
+    Positions& vectors = solver.state_.*part;
+    return view(vectors.data(), {vectors.cols(), vectors.rows()}, true, self);
   }
   double time() const { return state_.time; }
-  std::int64_t iterations() const { return stepper_->work().iterations + work_.iterations; }
 
  private:
   static void check(const StepResult& result) {
@@ -119,9 +103,9 @@ class Solver {
       throw std::runtime_error(harness::concat(to_string(result.status), ": ", result.detail));
   }
 
-  Scene scene_;  // what the solver refers to lives in it
-  BackendOptions options_;
+  const Scene& scene_;
   State state_;
+  BackendOptions options_;
   std::unique_ptr<Stepper> stepper_;
   std::unique_ptr<VelocityFilter> filter_;
   const Backend& backend_;
@@ -136,25 +120,20 @@ PYBIND11_MODULE(inextensible, module) {
   using namespace inextensible::python;
   using inextensible::State;
   using py::arg;
-  py::register_exception_translator([](std::exception_ptr thrown) {
-    try {
-      if (thrown) std::rethrow_exception(thrown);
-    } catch (const harness::UsageError& error) {
-      PyErr_SetString(PyExc_ValueError, error.what());
-    }
-  });
-  module.doc() = "Scenes, solvers and the judge of bench.";
+  py::register_exception<harness::UsageError>(module, "UsageError", PyExc_ValueError);
   py::class_<Scene>(module, "Scene")
       .def(py::init<const std::string&, const py::kwargs&>(), arg("name"))
-      .def("judge", &Scene::judge, arg("x"), arg("v") = py::none())
-      .def("__getattr__", &Scene::attribute);
+      .def("judge", judge, arg("x"), arg("v") = py::none())
+      .def("__getattr__", [](const py::object& self, const char* name) -> py::object {
+        return scene_views(self.cast<const Scene&>().arrays.scene, self).attr(name);
+      });
   py::class_<Solver>(module, "Solver")
       .def(py::init<const Scene&, const std::string&, double, std::uint64_t, const py::kwargs&>(),
-           arg("scene"), arg("name"), arg("strain_limit") = 0.01, arg("seed") = 1)
+           arg("scene"), arg("name"), arg("strain_limit") = 0.01, arg("seed") = 1,
+           py::keep_alive<1, 2>())
       .def("step", &Solver::step, arg("h"))
       .def("project", &Solver::project, arg("x_start"), arg("candidate"), arg("h"))
       .def_property_readonly("x", [](const py::object& s) { return Solver::view_of(&State::x, s); })
       .def_property_readonly("v", [](const py::object& s) { return Solver::view_of(&State::v, s); })
-      .def_property_readonly("time", &Solver::time)
-      .def_property_readonly("iterations", &Solver::iterations);
+      .def_property_readonly("time", &Solver::time);
 }

@@ -154,37 +154,31 @@ constexpr auto create_of = creators(std::make_index_sequence<64>());
 int step(void* object, InextensibleStep* step) { return static_cast<Object*>(object)->take(*step); }
 void destroy(void* object) { delete static_cast<Object*>(object); }
 
-InextensibleMethod method_of(const py::tuple& row) {
+// row: what loader.py makes of a class.
+InextensibleMethod method_of(const py::handle& row) {
+  using Text = std::string;
+  const auto [type, call, name, summary, label, citation, kind, flags, direction, settings] =
+      row.cast<std::tuple<py::object, Text, Text, Text, Text, Text, int, int, int, py::list>>();
   const std::size_t number = solvers().size();
   if (number == create_of.size()) throw std::length_error("there are more than 64 solvers");
-  Solver& solver = solvers().emplace_back(Solver{row[0], row[1].cast<std::string>(), {}});
-  const auto text = [&row](std::size_t i) { return kept(row[i].cast<std::string>()); };
-  for (const py::handle setting : row[9]) {
-    const auto [name, meaning, initial, least, largest, from, to, whole] = setting.cast<
-        std::tuple<std::string, std::string, double, double, double, double, double, bool>>();
+  Solver& solver = solvers().emplace_back(Solver{type, call, {}});
+  for (const py::handle setting : settings) {
+    using Setting = std::tuple<Text, Text, double, double, double, double, double, bool>;
+    const auto [key, meaning, initial, least, largest, from, to, whole] = setting.cast<Setting>();
     solver.settings.push_back(
-        {kept(name), kept(meaning), initial, least, largest, from, to, whole, nullptr});
+        {kept(key), kept(meaning), initial, least, largest, from, to, whole, nullptr});
   }
-  return {text(2),
-          text(3),
-          text(4),
-          text(5),
-          row[6].cast<int>(),
-          row[7].cast<int>(),
-          row[8].cast<int>(),
-          static_cast<std::int32_t>(solver.settings.size()),
-          solver.settings.data(),
-          create_of[number],
-          step,
-          destroy};
+  const auto count = static_cast<std::int32_t>(solver.settings.size());
+  return {kept(name), kept(summary), kept(label), kept(citation),         kind,
+          flags,      direction,     count,       solver.settings.data(), create_of[number],
+          step,       destroy};
 }
 
 const InextensiblePlugin* plugin_of(const char* path) {
   const py::object loaded = loader()["guarded"](loader()["load"], path);
   if (py::isinstance<py::str>(loaded)) throw std::runtime_error(loaded.cast<std::string>());
   auto* methods = new std::vector<InextensibleMethod>;  // these live until the program ends
-  for (const py::handle row : loaded[py::int_(1)])
-    methods->push_back(method_of(row.cast<py::tuple>()));
+  for (const py::handle row : loaded[py::int_(1)]) methods->push_back(method_of(row));
   return new InextensiblePlugin{INEXTENSIBLE_BUILD, kept(loaded[py::int_(0)].cast<std::string>()),
                                 static_cast<std::int32_t>(methods->size()), methods->data()};
 }
