@@ -121,44 +121,22 @@ class CFilter final : public VelocityFilter {
   Positions pins_;
 };
 
-class CStepper final : public Stepper {
+class CStepper final : public ForeignStepper {
  public:
   CStepper(const InextensibleMethod& method, std::shared_ptr<const Problem> shared,
            const BackendOptions& options)
-      : Stepper(std::move(shared)), object_(method, problem(), options, Along::edges) {
+      : ForeignStepper(std::move(shared)), object_(method, problem(), options, Along::edges) {
     const bool forces = problem().shear() || !problem().bending().empty() || problem().has_drag();
     if (forces && has(method, INEXTENSIBLE_WANTS_FORCES)) forces_.resize(3, problem().vertices());
   }
 
  private:
-  StepResult solve(const State& state, double h, Positions& x) override {
-    Stopwatch stopwatch(phases_wanted_);
-    x = state.x;
-    v_ = state.v;
-    InextensibleStep step{};
-    step.h = h;
-    step.time = state.time;
-    step.x = x.data();
-    step.v = v_.data();
+  StepResult take(const State& state, InextensibleStep& step) override {
     if (forces_.size() > 0) {
       find_forces(state);
       step.force = forces_.data();
     }
-    if (const BodyMotion& motion = problem().body_motion()) {
-      const Pose pose = motion(state.time + h);
-      pose_ << pose.turn, pose.translation;
-      step.pose = pose_.data();
-    }
-    phases_.unconstrained += stopwatch();
-    const StepResult taken = object_.take(step, work_);
-    for (const int pin : problem().pinned()) {
-      x.col(pin) = state.x.col(pin);
-      v_.col(pin).setZero();
-    }
-    phases_.filter += stopwatch() - step.copy_seconds;
-    phases_.copy += step.copy_seconds;
-    x_ = x;
-    return taken;
+    return object_.take(step, work_);
   }
 
   // All but the weight.
@@ -170,51 +148,9 @@ class CStepper final : public Stepper {
     for (const int pin : problem().pinned()) forces_.col(pin).setZero();
   }
 
-  // What the collision filter has moved, it has moved in a step.
-  StepResult end_velocities(const State& start, double h, const Positions& x,
-                            Positions& v) override {
-    v = v_ + (x - x_) * (1 / h);
-    for (const int pin : problem().pinned()) v.col(pin) = (x.col(pin) - start.x.col(pin)) / h;
-    return {};
-  }
-
   Object object_;
-  Positions v_, x_;   // what the method made of the state
   Positions forces_;  // empty where nothing wants them
-  Eigen::Matrix<double, 3, 4, Eigen::RowMajor> pose_;
 };
-
-SettingInfo setting_of(const InextensibleMethod& method, const InextensibleSetting& setting) {
-  const auto check = [&](bool fits, const char* what) {
-    if (!fits)
-      throw std::invalid_argument(std::string("solver '") + method.name + "', setting '" +
-                                  (setting.name ? setting.name : "") + "' " + what);
-  };
-  check(setting.name && setting.meaning, "has no name or no meaning");
-  SettingInfo info{.name = setting.name, .initial = setting.initial, .meaning = setting.meaning};
-  if (setting.words) {
-    for (const char* const* word = setting.words; *word; ++word) info.choices.push_back(*word);
-    const auto place = static_cast<std::size_t>(setting.initial);
-    check(setting.initial >= 0 && place < info.choices.size(), "begins with a word that it lacks");
-    info.initial = info.choices[place];
-    return info;
-  }
-  info.range = {.whole = setting.whole != 0};
-  info.range.least = -info.range.largest;
-  if (setting.least != 0 || setting.largest != 0) {
-    info.range.least = setting.least;
-    info.range.largest = setting.largest;
-  }
-  check(info.range.contains(setting.initial), "begins outside its range");
-  if (setting.search_least != 0 || setting.search_largest != 0) {
-    check(setting.search_least < setting.search_largest &&
-              info.range.contains(setting.search_least) &&
-              info.range.contains(setting.search_largest),
-          "has a search range that is empty or outside its range");
-    info.tunable = {setting.search_least, setting.search_largest};
-  }
-  return info;
-}
 
 }  // namespace
 
@@ -268,6 +204,72 @@ void SceneArrays::add_body(const Problem& problem) {
   scene.body_moves = static_cast<bool>(problem.body_motion());
 }
 
+StepResult ForeignStepper::solve(const State& state, double h, Positions& x) {
+  Stopwatch stopwatch(phases_wanted_);
+  x = state.x;
+  v_ = state.v;
+  InextensibleStep step{};
+  step.h = h;
+  step.time = state.time;
+  step.x = x.data();
+  step.v = v_.data();
+  if (const BodyMotion& motion = problem().body_motion()) {
+    const Pose pose = motion(state.time + h);
+    pose_ << pose.turn, pose.translation;
+    step.pose = pose_.data();
+  }
+  phases_.unconstrained += stopwatch();
+  const StepResult taken = take(state, step);
+  for (const int pin : problem().pinned()) {
+    x.col(pin) = state.x.col(pin);
+    v_.col(pin).setZero();
+  }
+  phases_.filter += stopwatch() - step.copy_seconds;
+  phases_.copy += step.copy_seconds;
+  x_ = x;
+  return taken;
+}
+
+// What the collision filter has moved, it has moved in a step.
+StepResult ForeignStepper::end_velocities(const State& start, double h, const Positions& x,
+                                          Positions& v) {
+  v = v_ + (x - x_) * (1 / h);
+  for (const int pin : problem().pinned()) v.col(pin) = (x.col(pin) - start.x.col(pin)) / h;
+  return {};
+}
+
+SettingInfo setting_of(const std::string& solver, const InextensibleSetting& setting) {
+  const auto check = [&](bool fits, const char* what) {
+    if (!fits)
+      throw std::invalid_argument("solver '" + solver + "', setting '" +
+                                  (setting.name ? setting.name : "") + "' " + what);
+  };
+  check(setting.name && setting.meaning, "has no name or no meaning");
+  SettingInfo info{.name = setting.name, .initial = setting.initial, .meaning = setting.meaning};
+  if (setting.words) {
+    for (const char* const* word = setting.words; *word; ++word) info.choices.push_back(*word);
+    const auto place = static_cast<std::size_t>(setting.initial);
+    check(setting.initial >= 0 && place < info.choices.size(), "begins with a word that it lacks");
+    info.initial = info.choices[place];
+    return info;
+  }
+  info.range = {.whole = setting.whole != 0};
+  info.range.least = -info.range.largest;
+  if (setting.least != 0 || setting.largest != 0) {
+    info.range.least = setting.least;
+    info.range.largest = setting.largest;
+  }
+  check(info.range.contains(setting.initial), "begins outside its range");
+  if (setting.search_least != 0 || setting.search_largest != 0) {
+    check(setting.search_least < setting.search_largest &&
+              info.range.contains(setting.search_least) &&
+              info.range.contains(setting.search_largest),
+          "has a search range that is empty or outside its range");
+    info.tunable = {setting.search_least, setting.search_largest};
+  }
+  return info;
+}
+
 Backend row_of(const InextensibleMethod& method) {
   const std::string name = method.name ? method.name : "";
   if (!method.create || !method.step || !method.destroy)
@@ -283,7 +285,7 @@ Backend row_of(const InextensibleMethod& method) {
   Backend row{.name = method.name, .summary = method.summary};
   if (has(method, INEXTENSIBLE_NO_LIMIT)) row.strain_control = StrainControl::time_step;
   for (int i = 0; i < method.setting_count; ++i)
-    row.settings.push_back(setting_of(method, method.settings[i]));
+    row.settings.push_back(setting_of(name, method.settings[i]));
   if (filter) {
     row.make_filter = [&method](const Problem& problem, const BackendOptions& options,
                                 Along along) {

@@ -16,6 +16,7 @@
 #include "harness/base/json.h"
 #include "harness/base/text.h"
 #include "harness/scenes/scene_folder.h"
+#include "solvers/c_method.h"
 
 namespace harness {
 namespace {
@@ -96,11 +97,11 @@ class Process {
   OpenFile channel_;
 };
 
-class ProcessStepper final : public inextensible::Stepper {
+class ProcessStepper final : public inextensible::ForeignStepper {
  public:
   ProcessStepper(const std::string& command, std::shared_ptr<const inextensible::Problem> shared,
                  const inextensible::BackendOptions& options)
-      : Stepper(std::move(shared)), folder_("scene"), process_(command) {
+      : ForeignStepper(std::move(shared)), folder_("scene"), process_(command) {
     Scene scene;
     scene.problem = problem_;
     scene.start.x = Positions::Zero(3, problem().vertices());
@@ -122,65 +123,38 @@ class ProcessStepper final : public inextensible::Stepper {
  private:
   // To the program: h, the time, x, v, and the pose of a body that moves. From it: 0 or not 0 where
   // it refuses the step, the seconds that it took by its own clock, x, v.
-  StepResult solve(const State& state, double h, Positions& x) override {
+  StepResult take(const State& /*state*/, InextensibleStep& step) override {
     const auto begin = Clock::now();
-    const int n = problem().vertices();
-    to_.resize(2 + 6 * n + (problem().body_motion() ? 12 : 0));
-    from_.resize(2 + 6 * n);
-    to_.head(2) << h, state.time;
-    to_.segment(2, 3 * n) = state.x.reshaped();
-    to_.segment(2 + 3 * n, 3 * n) = state.v.reshaped();
-    if (const auto& motion = problem().body_motion()) {
-      const inextensible::Pose pose = motion(state.time + h);
-      Eigen::Matrix<double, 4, 3> rows;  // transposed
-      rows << pose.turn.transpose(), pose.translation.transpose();
-      to_.tail(12) = rows.reshaped();
-    }
+    const std::size_t bytes = 3 * sizeof(double) * problem().vertices();
+    const double times[] = {step.h, step.time};
+    double outcome[] = {0, 0};
     try {
-      process_.write(to_.data(), to_.size() * sizeof(double));
-      process_.read(from_.data(), from_.size() * sizeof(double));
+      process_.write(times, sizeof times);
+      process_.write(step.x, bytes);
+      process_.write(step.v, bytes);
+      if (step.pose) process_.write(step.pose, 12 * sizeof(double));
+      process_.read(outcome, sizeof outcome);
+      process_.read(step.x, bytes);
+      process_.read(step.v, bytes);
     } catch (const std::runtime_error&) {
       return {Status::not_converged, 0, -1, 0, "the program has ended"};
     }
-    x = from_.segment(2, 3 * n).reshaped(3, n);
-    v_ = from_.segment(2 + 3 * n, 3 * n).reshaped(3, n);
-    for (const int pin : problem().pinned()) x.col(pin) = state.x.col(pin);
-    x_ = x;
-    if (phases_wanted_) {
-      phases_.filter += from_[1];
-      phases_.copy += std::max(0.0, since(begin) - from_[1]);
-    }
-    if (from_[0] != 0) return {Status::not_converged, 0, -1, 0, "the program refused the step"};
-    if (!from_.allFinite()) return {Status::not_finite, 0, -1, 0, "overflow"};
-    return {};
-  }
-
-  // What the collision filter has moved, it has moved in a step.
-  StepResult end_velocities(const State& start, double h, const Positions& x,
-                            Positions& v) override {
-    v = v_ + (x - x_) * (1 / h);
-    for (const int pin : problem().pinned()) v.col(pin) = (x.col(pin) - start.x.col(pin)) / h;
+    step.copy_seconds = std::max(0.0, since(begin) - outcome[1]);
+    if (outcome[0] != 0) return {Status::not_converged, 0, -1, 0, "the program refused the step"};
+    const auto finite = [n = problem().vertices()](const double* numbers) {
+      return Eigen::Map<const Positions>(numbers, 3, n).allFinite();
+    };
+    if (!finite(step.x) || !finite(step.v)) return {Status::not_finite, 0, -1, 0, "overflow"};
     return {};
   }
 
   TemporaryFolder folder_;
   Process process_;
-  Eigen::VectorXd to_, from_;
-  Positions v_, x_;
 };
 
 const char* kept(std::string text) {
   static std::deque<std::string> texts;  // rows of the registry refer to them
   return texts.emplace_back(std::move(text)).c_str();
-}
-
-inextensible::SettingInfo setting_of(const std::string& name, const json& numbers) {
-  inextensible::SettingInfo info{
-      .name = kept(name), .initial = numbers.at(0).get<double>(), .meaning = kept(numbers.at(3))};
-  info.range = {.least = numbers.at(1), .largest = numbers.at(2)};
-  info.range.whole = numbers.at(0).is_number_integer() && numbers.at(1).is_number_integer();
-  if (numbers.size() > 5) info.tunable = {{numbers.at(4), numbers.at(5)}};
-  return info;
 }
 
 }  // namespace
@@ -214,8 +188,16 @@ ProcessSolver process_solver(const std::string& command) {
   if (about.value("whole_step", false)) row.velocities = inextensible::Velocities::whole_step;
   if (about.value("keeps_limit", false))
     row.strain_control = inextensible::StrainControl::strain_limit;
-  for (const auto& [name, numbers] : settings.items())
-    row.settings.push_back(setting_of(name, numbers));
+  for (const auto& [name, value] : settings.items()) {  // initial, least, largest, meaning, search
+    const auto number = [&list = value](std::size_t i) {
+      return list.size() > i ? list.at(i).get<double>() : 0;
+    };
+    const bool whole = value.at(0).is_number_integer() && value.at(1).is_number_integer();
+    row.settings.push_back(
+        inextensible::setting_of(row.name, {kept(name), kept(value.at(3)), number(0), number(1),
+                                            number(2), number(4), number(5), whole, nullptr}));
+  }
+
   row.make = [command](std::shared_ptr<const inextensible::Problem> problem,
                        const inextensible::BackendOptions& options) {
     return std::make_unique<ProcessStepper>(command, std::move(problem), options);
