@@ -2,10 +2,6 @@
 
 #include <fcntl.h>
 #include <sys/stat.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
 
 #include "harness/base/errors.h"
 #include "harness/base/json.h"

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <iomanip>
-#include <sstream>
 
 namespace harness {
 

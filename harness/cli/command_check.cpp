@@ -1,13 +1,10 @@
 // bench check: tests what every solver must fulfil. bench answers: solvers against exact solutions.
-#include <algorithm>
 #include <iomanip>
-#include <sstream>
 
 #include "harness/answers/answer.h"
 #include "harness/cli/command.h"
 #include "harness/points/context.h"
 #include "harness/stability/conformance.h"
-#include "solvers/registry.h"
 
 namespace harness {
 namespace {

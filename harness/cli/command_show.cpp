@@ -1,12 +1,7 @@
 // bench show, budget, claims, results, report and plot: result files printed and drawn.
-#include <algorithm>
-#include <filesystem>
-#include <sstream>
-#include <string_view>
 
 #include "harness/analysis/findings.h"
 #include "harness/answers/answer.h"
-#include "harness/base/files.h"
 #include "harness/claims/claims.h"
 #include "harness/cli/command.h"
 #include "harness/tables/tables.h"

@@ -1,12 +1,8 @@
 // bench: the command line. Only this file includes CLI11, which takes ten seconds to compile.
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdlib>
-#include <filesystem>
-#include <map>
 
 #include "harness/base/child_process.h"
-#include "harness/base/files.h"
 #include "harness/cli/command.h"
 #include "harness/compare/comparison.h"
 #include "harness/points/context.h"

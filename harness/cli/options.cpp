@@ -1,16 +1,6 @@
-#include <algorithm>
-#include <limits>
 
-#include "harness/base/errors.h"
-#include "harness/base/files.h"
-#include "harness/base/json.h"
-#include "harness/base/pattern.h"
-#include "harness/base/text.h"
 #include "harness/cli/command.h"
-#include "harness/judge/reference.h"
-#include "harness/scenes/scene.h"
 #include "harness/scenes/scene_folder.h"
-#include "solvers/registry.h"
 
 namespace harness {
 

@@ -1,9 +1,7 @@
 #include "harness/compare/comparison.h"
 
-#include <algorithm>
 #include <cmath>
 #include <deque>
-#include <map>
 #include <set>
 #include <tuple>
 

@@ -1,8 +1,6 @@
 // Reads gates, results and baselines; writes baselines.
 #include "harness/base/files.h"
 
-#include <array>
-
 #include "harness/base/errors.h"
 #include "harness/base/json.h"
 #include "harness/base/text.h"

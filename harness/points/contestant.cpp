@@ -1,13 +1,5 @@
 #include "harness/points/contestant.h"
 
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <memory>
-#include <stdexcept>
-#include <utility>
-
-#include "harness/base/errors.h"
 #include "harness/base/json.h"
 
 namespace harness {

@@ -6,9 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <deque>
-#include <map>
 #include <stdexcept>
 
 #include "harness/base/clock.h"

@@ -1,12 +1,7 @@
 #include "harness/points/schema.h"
 
-#include <algorithm>
-#include <array>
-
-#include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/json.h"
-#include "harness/points/point_json.h"
 #include "harness/points/suite.h"
 
 namespace harness {

@@ -1,14 +1,8 @@
 #include "harness/points/suite.h"
 
-#include <algorithm>
-#include <optional>
-
-#include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/json.h"
-#include "harness/base/pattern.h"
 #include "harness/base/text.h"
-#include "harness/points/point_json.h"
 #include "harness/points/schema.h"
 #include "harness/points/tuned.h"
 

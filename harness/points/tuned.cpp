@@ -1,17 +1,12 @@
 #include "harness/points/tuned.h"
 
-#include <algorithm>
 #include <filesystem>
-#include <variant>
 
-#include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/json.h"
 #include "harness/base/text.h"
 #include "harness/points/context.h"
-#include "harness/points/point_json.h"
 #include "harness/points/schema.h"
-#include "harness/scenes/scene.h"
 
 namespace harness {
 namespace {

@@ -1,9 +1,5 @@
-#include <algorithm>
-#include <cmath>
-#include <map>
 
 #include "harness/analysis/findings.h"
-#include "harness/base/fields.h"
 #include "harness/base/text.h"
 #include "harness/tables/tables.h"
 

@@ -3,10 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "harness/points/result_file.h"
-#include "solvers/registry.h"
 #include "support/invented_runs.h"
 
 namespace harness::analysis {

@@ -3,11 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <fstream>
 
-#include "harness/base/errors.h"
 #include "harness/points/result_file.h"
 #include "harness/points/suite.h"
 #include "harness/points/tuned.h"

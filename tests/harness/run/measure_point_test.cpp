@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <vector>
-
 #include "harness/base/files.h"
 #include "harness/run/calibration.h"
 #include "harness/run/fake_machine.h"
