@@ -158,8 +158,8 @@ inline std::vector<Verb> verbs() {
 struct SceneOptions {
   std::string scene;
   Numbers n;
-  Words set;                                                        // NAME=NUMBER
-  std::string pins, load, floor, rest, weld, thickness, triangles;  // for a mesh
+  Words set;                                // NAME=NUMBER
+  std::map<std::string, std::string> mesh;  // its parts (with_mesh_parts) but its bodies
   Words body, body_then;
   int least_n = 2;  // of --n
 
