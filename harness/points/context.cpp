@@ -10,14 +10,13 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
-#include <memory>
 #include <thread>
 
 #include "build_info.h"  // made by CMake
+#include "harness/base/child_process.h"
 #include "harness/base/files.h"
 #include "harness/base/json.h"
 #include "harness/base/text.h"
@@ -51,13 +50,9 @@ constexpr const char* program_parts =
 
 // Output of git in the source folder, "" without git or outside a checkout.
 std::string git(const std::string& arguments) {
-  const std::string command = "git -C '" INEXTENSIBLE_SOURCE_DIR "' " + arguments + " 2>/dev/null";
-  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
-  std::string text;
-  std::array<char, 256> buffer{};
-  while (pipe && fgets(buffer.data(), buffer.size(), pipe.get())) text += buffer.data();
-  while (!text.empty() && text.back() == '\n') text.pop_back();
-  return text;
+  const std::string command = "git -C '" INEXTENSIBLE_SOURCE_DIR "' " + arguments;
+  const std::string text = run_program({"sh", "-c", command}, 60).out;
+  return text.substr(0, text.find_last_not_of('\n') + 1);
 }
 
 std::string now() {
