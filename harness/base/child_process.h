@@ -4,8 +4,6 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <nlohmann/json.hpp>
-#include <string>
 #include <vector>
 
 #include "harness/base/interrupt.h"

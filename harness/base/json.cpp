@@ -9,7 +9,6 @@
 #include <valijson/schema_parser.hpp>
 #include <valijson/validation_results.hpp>
 #include <valijson/validator.hpp>
-#include <vector>
 
 #include "harness/base/errors.h"
 #include "harness/base/text.h"

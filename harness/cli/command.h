@@ -1,31 +1,12 @@
 // Verbs: how they declare their options, the list of them, and what they share.
 #pragma once
 
-#include <unistd.h>
-
-#include <chrono>
-#include <cstdint>
-#include <functional>
 #include <initializer_list>
 #include <iostream>
-#include <map>
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <optional>
-#include <string>
-#include <utility>
-#include <variant>
-#include <vector>
 
-#include "harness/base/errors.h"
-#include "harness/base/files.h"
-#include "harness/base/interrupt.h"
-#include "harness/base/journal.h"
 #include "harness/base/json.h"
 #include "harness/base/text.h"
-#include "harness/points/contestant.h"
 #include "harness/run/sweep.h"
-#include "harness/scenes/scene.h"
 
 namespace CLI {
 class App;

@@ -3,7 +3,6 @@
 #include <set>
 
 #include "harness/analysis/measured_point.h"
-#include "harness/base/statistics.h"
 #include "harness/cli/command.h"
 #include "harness/film/film.h"
 #include "harness/points/tuned.h"

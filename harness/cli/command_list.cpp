@@ -3,7 +3,6 @@
 #include "harness/answers/answer.h"
 #include "harness/claims/claims.h"
 #include "harness/cli/command.h"
-#include "harness/points/schema.h"
 #include "harness/stability/hard_case.h"
 
 namespace harness {

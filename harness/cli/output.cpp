@@ -9,7 +9,6 @@
 #include "harness/claims/claims.h"
 #include "harness/cli/command.h"
 #include "harness/points/context.h"
-#include "harness/points/result_file.h"
 #include "harness/tables/tables.h"
 
 namespace harness {

@@ -1,9 +1,7 @@
 #include "harness/compare/comparison.h"
 
-#include <cmath>
 #include <deque>
 #include <set>
-#include <tuple>
 
 #include "harness/base/statistics.h"
 #include "harness/base/text.h"

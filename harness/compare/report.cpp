@@ -1,5 +1,4 @@
 // The printers of a comparison: terminal, JUnit XML, Markdown.
-#include <sstream>
 #include <unordered_map>
 
 #include "harness/base/table.h"

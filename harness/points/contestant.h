@@ -2,16 +2,9 @@
 // part several times.
 #pragma once
 
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
-
 #include "harness/base/errors.h"
 #include "harness/base/pattern.h"
 #include "harness/points/point_json.h"
-#include "harness/scenes/scene.h"
-#include "solvers/registry.h"
 
 namespace harness {
 

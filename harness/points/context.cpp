@@ -6,7 +6,6 @@
 #include <omp.h>
 #include <sys/utsname.h>
 #include <umfpack.h>
-#include <unistd.h>
 
 #include <Eigen/Core>
 #include <array>
@@ -18,7 +17,6 @@
 #include "build_info.h"  // made by CMake
 #include "harness/base/child_process.h"
 #include "harness/base/files.h"
-#include "harness/base/json.h"
 #include "harness/base/text.h"
 #include "harness/points/plugins.h"
 

@@ -2,9 +2,6 @@
 // tables of its fields are here, and in measures.h and work_counters.h.
 #pragma once
 
-#include <variant>
-
-#include "harness/base/fields.h"
 #include "harness/points/point.h"
 
 template <>

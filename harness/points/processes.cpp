@@ -4,10 +4,8 @@
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <deque>
-#include <stdexcept>
 
 #include "harness/base/clock.h"
 #include "harness/base/files.h"

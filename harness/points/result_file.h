@@ -1,13 +1,6 @@
 // The result file, schema inextensible-bench/1 (configs/result.schema.json).
 #pragma once
 
-#include <array>
-#include <nlohmann/json.hpp>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "harness/points/point.h"
 #include "harness/points/suite.h"
 
 namespace harness {

@@ -2,14 +2,7 @@
 // written by hand.
 #pragma once
 
-#include <nlohmann/json.hpp>
-#include <string>
-#include <tuple>
-#include <vector>
-
-#include "harness/base/fields.h"
 #include "harness/points/contestant.h"
-#include "harness/points/measures.h"
 
 namespace harness {
 

@@ -1,12 +1,7 @@
 // A suite: what a sweep runs. Read from JSON (configs/*.json, schema configs/suite.schema.json).
 #pragma once
 
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
-
 #include "harness/points/contestant.h"
-#include "harness/points/point.h"
 
 namespace harness {
 

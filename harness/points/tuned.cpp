@@ -1,7 +1,5 @@
 #include "harness/points/tuned.h"
 
-#include <filesystem>
-
 #include "harness/base/files.h"
 #include "harness/base/json.h"
 #include "harness/base/text.h"

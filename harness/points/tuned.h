@@ -2,11 +2,6 @@
 // sizes and strain limits. The file is configs/tuned.json, its schema configs/tuned.schema.json.
 #pragma once
 
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
-
-#include "harness/points/contestant.h"
 #include "harness/points/suite.h"
 
 namespace harness {

@@ -1,11 +1,6 @@
 // What result files say, as tables on a terminal and on a page of Markdown (docs/results.md).
 #pragma once
 
-#include <nlohmann/json.hpp>
-#include <ostream>
-#include <string>
-#include <vector>
-
 #include "harness/analysis/plane.h"
 #include "harness/base/table.h"
 #include "harness/points/result_file.h"

@@ -3,12 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <initializer_list>
-#include <tuple>
-#include <utility>
 
 #include "harness/claims/claims.h"
 #include "support/invented_runs.h"

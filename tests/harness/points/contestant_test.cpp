@@ -6,7 +6,6 @@
 #include <fstream>
 
 #include "harness/points/result_file.h"
-#include "harness/points/suite.h"
 #include "harness/points/tuned.h"
 #include "harness/run/sweep.h"
 #include "support/invented_runs.h"

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "harness/analysis/findings.h"
-#include "harness/base/files.h"
 #include "harness/base/table.h"
 #include "harness/compare/comparison.h"
 #include "harness/points/context.h"

@@ -9,7 +9,6 @@
 #include <thread>
 
 #include "harness/base/child_process.h"
-#include "harness/points/point_json.h"
 #include "harness/run/fake_machine.h"
 #include "harness/stability/trial.h"
 

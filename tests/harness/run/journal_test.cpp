@@ -5,7 +5,6 @@
 #include <random>
 
 #include "harness/base/files.h"
-#include "harness/points/point_json.h"
 #include "harness/points/result_file.h"
 #include "harness/run/fake_machine.h"
 

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/base/files.h"
 #include "harness/run/calibration.h"
 #include "harness/run/fake_machine.h"
 #include "harness/run/machine_noise.h"
