@@ -1,4 +1,4 @@
-#define VALIJSON_USE_EXCEPTIONS 1  // a definition for all sources would forbid the precompiled header
+#define VALIJSON_USE_EXCEPTIONS 1  // here alone: for all, it would forbid the precompiled header
 #include "harness/base/json.h"
 
 #include <cmath>
