@@ -13,8 +13,6 @@ namespace {
 
 using Times = std::vector<double>;
 
-// ---- Mann-Whitney -------------------------------------------------------------------------------
-
 TEST(MannWhitney, AgreesWithIndependentPrograms) {
   const auto series = [](int from, int to, auto value) {
     Times times;
@@ -43,8 +41,6 @@ TEST(MannWhitney, AgreesWithIndependentPrograms) {
        })
     EXPECT_NEAR(mann_whitney_greater(row.a, row.b), row.p, row.accuracy);
 }
-
-// ---- Times --------------------------------------------------------------------------------------
 
 Times spread(double middle, int n, double width = 0.01) {
   Times times;
@@ -78,8 +74,6 @@ TEST(CompareTimes, FlagsOnlyWhatTestAndBothRatiosAgreeOn) {
     EXPECT_EQ(times.too_few, before.size() == 3);
   }
 }
-
-// ---- Points and results -------------------------------------------------------------------------
 
 ComparedPoint point_with(const std::string& id, double iterations = 100) {
   ComparedPoint point;
@@ -190,8 +184,6 @@ TEST(Compare, PairsPointsOfOneNameInTheirOrder) {
   EXPECT_EQ(compare(both, both, Gate()).count(Change::same), 2u);
 }
 
-// ---- Files --------------------------------------------------------------------------------------
-
 TEST(Gate, IsReadAndRefusedByName) {
   for (const auto& [text, part] :
        {std::pair("{", "'g.json' is not JSON"),
@@ -207,8 +199,6 @@ TEST(Gate, IsReadAndRefusedByName) {
   EXPECT_EQ(gate.counter_rule, CounterRule::rise);
   EXPECT_TRUE(gate.errors.empty());
 }
-
-// ---- Reports ------------------------------------------------------------------------------------
 
 TEST(Reports, JUnitEscapes) {
   const Comparison comparison{
