@@ -24,9 +24,11 @@ struct SweepSpec {
   SceneParameters scene_parameters;
   std::map<std::string, inextensible::Settings> solver_options;  // a contestant's own go first
 };
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(SweepSpec, sweep, scene, limits, resolutions,
+                                                scene_parameters, solver_options)
 
 struct Suite {
-  std::string name, description, profile;
+  std::string name = "unnamed", description, profile = "custom";
   std::uint64_t seed = 1;
   int reps = 3;         // samples of each point that may be best, the first one included
   double timeout = 60;  // s a point
@@ -39,6 +41,8 @@ struct Suite {
   // A run is stopped once it takes this many times as long as the fastest one there. Not in files.
   double far_behind = 30;
 };
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Suite, name, description, profile, seed, reps,
+                                                timeout, finest_error)
 
 std::vector<std::string> sweep_kinds();
 // Levels of error that best steps are searched for, loose to tight.
