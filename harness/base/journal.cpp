@@ -10,8 +10,6 @@
 namespace harness {
 namespace {
 
-using nlohmann::json;
-
 std::string check_of(const json& line) { return fnv1a(compact(line)); }
 
 // A line without its check. Throws where it does not pass.

@@ -15,7 +15,6 @@
 
 namespace harness {
 
-using nlohmann::json;
 using nlohmann::ordered_json;
 
 namespace {

@@ -225,20 +225,20 @@ struct OutputOptions {
 std::string default_output(const std::string& stem, const std::string& ending, bool last = false);
 
 struct Finished {
-  nlohmann::json document = nullptr;  // null: there is nothing to write
-  bool complete = true;               // false: interrupted
-  int code = success;                 // if complete
+  json document = nullptr;  // null: there is nothing to write
+  bool complete = true;     // false: interrupted
+  int code = success;       // if complete
 };
 
 // A run that can be interrupted and resumed.
 struct Undertaking {
-  std::string stem;               // of the default output's name
-  nlohmann::json context, suite;  // must agree with a resumed run's (identity())
-  const char* rows;               // the list of results in its file: "points", "matrix" or "rows"
-  const char* what;               // the same in messages
+  std::string stem;     // of the default output's name
+  json context, suite;  // must agree with a resumed run's (identity())
+  const char* rows;     // the list of results in its file: "points", "matrix" or "rows"
+  const char* what;     // the same in messages
   // Runs what the journal lacks. before: context of the resumed run, or null.
-  std::function<Finished(Journal& journal, const nlohmann::json& before)> run;
-  std::function<void(const nlohmann::json& result, Journal&)> add = [](auto&&...) {};
+  std::function<Finished(Journal& journal, const json& before)> run;
+  std::function<void(const json& result, Journal&)> add = [](auto&&...) {};
   std::function<std::size_t(const Journal&)> count = [](const Journal& j) {
     return j.known().size();
   };
@@ -256,16 +256,15 @@ int carry_out(const OutputOptions& options, const Undertaking& undertaking);
 // is 0, each file is moved atomically into the folder of `out` and named on stdout.
 int draw(const std::string& script, const Words& arguments, const std::string& out);
 
-bool is_sweep(const nlohmann::json& document);  // over strain, resolution or step
+bool is_sweep(const json& document);  // over strain, resolution or step
 
 // A result as text, as wide as the terminal. name: in hints. all: every contestant, and failures.
-std::string text_of_result(const nlohmann::json& document, const std::string& name,
-                           bool all = false);
+std::string text_of_result(const json& document, const std::string& name, bool all = false);
 
 // A result as plots/ reads it: a sweep with its analysis. Throws UsageError if it is untimed.
-nlohmann::json with_analysis(nlohmann::json document);
+json with_analysis(json document);
 
 // Figures of a result, whose names begin with `name`. folder: "" is the current one.
-int draw_figures(nlohmann::json document, const std::string& name, const std::string& folder);
+int draw_figures(json document, const std::string& name, const std::string& folder);
 
 }  // namespace harness

@@ -72,9 +72,9 @@ struct Answers : OutputOptions {
 
   int run(const Words& typed) {
     const auto plan = plan_answers(pattern_of("--answer", answer), solver_pattern(solver));
-    nlohmann::json context = machine_context();
+    json context = machine_context();
     context["selection"] = {{"solver", solver}, {"answer", answer}, {"timeout", timeout}};
-    const auto compute = [&](Journal& journal, const nlohmann::json&) -> Finished {
+    const auto compute = [&](Journal& journal, const json&) -> Finished {
       Progress progress;
       const AnswerOutcome outcome = run_answers(plan, timeout, journaled_events(journal, progress));
       if (!outcome.complete) return {.complete = false};

@@ -14,7 +14,6 @@ namespace harness {
 namespace {
 
 using analysis::percent;
-using nlohmann::json;
 
 std::string ms(double seconds) { return number_text(1e3 * seconds, 3); }
 

@@ -11,7 +11,6 @@ namespace harness {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
 // Options of the verbs that compare: a gate, and reports beside the table on stdout.
 struct CompareOptions {

@@ -8,8 +8,6 @@
 namespace harness {
 namespace {
 
-using nlohmann::json;
-
 struct List {
   std::string name;
   std::function<json()> rows;

@@ -6,8 +6,6 @@
 namespace harness {
 namespace {
 
-using nlohmann::json;
-
 void check_spec(PointSpec& spec) {
   const auto type = checked_scene(spec.scene);
   const SceneParameters parameters = complete_parameters(*type, spec.scene_parameters);

@@ -9,8 +9,6 @@
 namespace harness {
 namespace {
 
-using nlohmann::json;
-
 // Throws UsageError for results of --untimed: what is made of these ranks times.
 std::vector<NamedResult> read_all(const Words& files, ResultKinds kinds) {
   std::vector<NamedResult> results;

@@ -11,8 +11,6 @@
 namespace harness {
 namespace {
 
-using nlohmann::json;
-
 // Beyond this, even a few steps of a slow reference route take too long to time.
 constexpr int most_timed_vertices = 20000;
 

@@ -10,8 +10,6 @@
 namespace harness {
 namespace {
 
-using nlohmann::json;
-
 // Solvers with tunable settings; one that is not a contestant must be named in full.
 std::vector<std::string> chosen_solvers(const std::string& text, const SweepSpec& scene) {
   std::vector<std::string> solvers;

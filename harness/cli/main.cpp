@@ -90,7 +90,7 @@ constexpr const char* description =
     "  bench help VERB                          the options of a verb (SUBCOMMANDS, below)\n";
 
 std::string version_text() {
-  const nlohmann::json build = machine_context().at("build");
+  const json build = machine_context().at("build");
   const std::string commit = build.at("git");
   return std::string("bench ") + version() +
          (commit.empty() ? "" : ", commit " + commit.substr(0, 12)) +
@@ -127,7 +127,7 @@ int guarded(const std::function<int()>& work) {
     return code;
   } catch (const UsageError& error) {
     return failed(error.what(), usage_error);
-  } catch (const nlohmann::json::exception& error) {
+  } catch (const json::exception& error) {
     // Schemas are checked where files are read; what a schema leaves open is reported here.
     return failed(std::string("a value in a file has the wrong type: ") + error.what(),
                   usage_error);

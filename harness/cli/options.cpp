@@ -4,8 +4,6 @@
 
 namespace harness {
 
-using nlohmann::json;
-
 void SceneOptions::declare(const Command& to, const std::string& standard) {
   to.option("--scene", scene,
             "one of `bench list scenes`, mesh:FILE.obj, or a folder of bench export; default: " +

@@ -14,7 +14,6 @@
 namespace harness {
 namespace {
 
-using nlohmann::json;
 namespace fs = std::filesystem;
 
 bool exists(const std::string& path) {

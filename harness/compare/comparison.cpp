@@ -15,8 +15,6 @@ std::string per_cent(double ratio) {
 
 namespace {
 
-using nlohmann::json;
-
 void note_counters(const ComparedPoint& base, const ComparedPoint& next, const Gate& gate,
                    PointChange& result) {
   bool rose = false, fell = false;

@@ -11,7 +11,6 @@
 namespace harness {
 namespace {
 
-using nlohmann::json;
 using nlohmann::ordered_json;
 
 constexpr const char* baseline_schema = "inextensible-baseline/1";

@@ -5,8 +5,6 @@
 namespace harness {
 namespace {
 
-using nlohmann::json;
-
 // Building takes a while where there is a body, and suites ask for one scene again and again.
 const inextensible::Problem& small_problem(const SceneType& type, const SceneParameters& given) {
   constexpr double enough = 11;  // the same parts as at any size

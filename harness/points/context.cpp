@@ -30,8 +30,6 @@ char* openblas_get_corename();
 namespace harness {
 namespace {
 
-using nlohmann::json;
-
 std::string cpu_field(const std::string& name) {
   std::ifstream file("/proc/cpuinfo");
   for (std::string line; std::getline(file, line);) {

@@ -20,7 +20,6 @@ using inextensible::Positions;
 using inextensible::State;
 using inextensible::Status;
 using inextensible::StepResult;
-using nlohmann::json;
 
 // A program whose standard input and output are ours. Its errors go where ours go, and it ends with
 // this process at the latest.

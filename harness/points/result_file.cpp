@@ -11,7 +11,6 @@
 namespace harness {
 namespace {
 
-using nlohmann::json;
 using Pointer = json::json_pointer;
 
 // One entry a repetition, in Google Benchmark's own format; compare.py reads them.

@@ -7,7 +7,6 @@
 namespace harness {
 namespace {
 
-using nlohmann::json;
 using nlohmann::ordered_json;
 
 const char* word_of(inextensible::Origin origin) {

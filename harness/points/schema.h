@@ -44,7 +44,6 @@ std::vector<std::string> counter_names();
 
 // Throws UsageError, naming `path` and the first place that does not fit, unless `document` is as
 // configs/<schema>.schema.json says.
-void check_schema(const nlohmann::json& document, const std::string& schema,
-                  const std::string& path);
+void check_schema(const json& document, const std::string& schema, const std::string& path);
 
 }  // namespace harness

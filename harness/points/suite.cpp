@@ -9,8 +9,6 @@
 namespace harness {
 namespace {
 
-using nlohmann::json;
-
 void read_limits(const json& object, const std::string& where, SweepSpec& spec) {
   if (object.contains("limit") == object.contains("limits"))
     throw UsageError(where + ": give 'limit' or 'limits', for example \"limits\": [0.1, 0.01]");

@@ -57,9 +57,9 @@ Suite read_suite(const std::string& path);
 Suite parse_suite(const std::string& text, const std::string& path);
 // Its two steps, for options that change the document in between: JSON that fits the schema, and
 // what it says.
-nlohmann::json suite_document(const std::string& text, const std::string& path);
-Suite suite_of(const nlohmann::json& document, const std::string& path);
+json suite_document(const std::string& text, const std::string& path);
+Suite suite_of(const json& document, const std::string& path);
 // parse_suite() reads it back.
-nlohmann::json to_json(const Suite& suite);
+json to_json(const Suite& suite);
 
 }  // namespace harness

@@ -9,7 +9,6 @@
 namespace harness {
 namespace {
 
-using nlohmann::json;
 // Two files with the same settings are the same to a sweep, whenever they were found.
 std::string hash_of(const std::vector<TunedEntry>& entries) {
   std::map<std::string, json> settings;

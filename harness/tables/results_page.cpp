@@ -8,7 +8,6 @@
 namespace harness {
 
 using namespace analysis;  // tables print what was analysed
-using nlohmann::json;
 
 namespace {
 

@@ -10,8 +10,6 @@
 
 namespace harness {
 
-using nlohmann::json;
-
 // The best point of its contestant, right to 2 %, in steps of two iterations.
 inline json point(const std::string& scene, const std::string& sweep, const std::string& solver,
                   double limit, int vertices, double step, double seconds) {

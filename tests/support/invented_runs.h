@@ -5,8 +5,6 @@
 
 namespace harness::invented {
 
-using nlohmann::json;
-
 // A run by nine samples, 0.1 % apart, the least as given: sure unless a test says otherwise.
 inline PointResult sampled(const std::string& scene, const std::string& sweep,
                            const std::string& contestant, double limit, int vertices, double step,

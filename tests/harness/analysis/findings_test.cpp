@@ -11,7 +11,6 @@ namespace {
 
 using invented::document;
 using invented::run;
-using nlohmann::json;
 
 std::string winner(const Cell& cell) {
   return cell.first() ? cell.first()->point.id() : "none: " + cell.empty_because;

@@ -17,7 +17,6 @@ namespace harness {
 namespace {
 
 using End = ChildOutcome::End;
-using nlohmann::json;
 
 void sleep_for(int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); }
 

@@ -9,7 +9,7 @@ namespace harness {
 namespace {
 
 TEST(JsonText, InvalidUtf8LosesNoDocument) {
-  const nlohmann::json value = {{"path", "a\xffz"}};
+  const json value = {{"path", "a\xffz"}};
   EXPECT_EQ(parse_document(document_text(value), "a.json").at("path"), "a\uFFFDz");
 }
 

@@ -14,8 +14,6 @@
 namespace harness {
 namespace {
 
-using nlohmann::json;
-
 std::string write_tuned(const std::vector<TunedEntry>& entries) {
   const std::string path = ::testing::TempDir() + "tuned_of_test.json";
   std::ofstream(path) << tuned_document(entries);

@@ -14,8 +14,6 @@
 namespace harness {
 namespace {
 
-using nlohmann::json;
-
 // Whatever a user's file holds: a suite, a result, or UsageError with one line; nothing else gets
 // out.
 std::string read_as_suite(const std::string& text) {

@@ -9,8 +9,6 @@
 namespace harness {
 namespace {
 
-using nlohmann::json;
-
 class Random {
  public:
   explicit Random(std::uint64_t seed) : generator_(seed) {}

@@ -17,8 +17,6 @@
 namespace harness {
 namespace {
 
-using nlohmann::json;
-
 json read(const std::string& path) { return parse_document(read_file(path, "file"), path); }
 
 // What does not fit configs/<schema>.schema.json, "" if all does.

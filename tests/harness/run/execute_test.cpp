@@ -35,7 +35,7 @@ void sleep_for_ever() {
 }
 
 TEST(Isolation, ARunInAChildIsTheRunInTheParent) {
-  nlohmann::json both[2];
+  json both[2];
   for (const bool in_child : {false, true}) {
     const Runner run = in_child ? isolated(run_point, 0) : run_point;
     PointResult point = run(chain_of_ten(), {});

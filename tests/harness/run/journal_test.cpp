@@ -11,8 +11,6 @@
 namespace harness {
 namespace {
 
-using nlohmann::json;
-
 // Two scenes, two limits, three sizes: 60 searches of up to ten steps.
 Suite suite_of(const std::string& axis) {
   json sweeps = json::array();
