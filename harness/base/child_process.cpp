@@ -5,18 +5,12 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
-#include <cerrno>
-#include <csignal>
 #include <cstdio>
-#include <cstring>
-#include <ctime>
 #include <fstream>
 #include <iostream>
 #include <memory>
 #include <new>
-#include <stdexcept>
 
 #include "harness/base/clock.h"
 #include "harness/base/files.h"

@@ -4,8 +4,6 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <nlohmann/json.hpp>
-#include <string>
 #include <vector>
 
 #include "harness/base/interrupt.h"
@@ -78,15 +76,15 @@ std::string signal_text(int signal);
 // which the child ended without it. JSON that cannot be read (a solver's counter that is not a
 // number, say) counts as an exception of the child. Throws Interrupted.
 template <class Read, class Lost>
-auto in_child(const ChildLimits& limits, const std::function<nlohmann::json(Heartbeat&)>& work,
+auto in_child(const ChildLimits& limits, const std::function<json(Heartbeat&)>& work,
               const Read& read, const Lost& lost) {
   ChildOutcome child =
       run_in_child([&](Heartbeat& heartbeat) { return compact(work(heartbeat)); }, limits);
   if (child.end == ChildOutcome::End::interrupted) throw Interrupted();
   if (child.end == ChildOutcome::End::returned) {
     try {
-      return read(nlohmann::json::parse(child.text));
-    } catch (const nlohmann::json::exception& error) {
+      return read(json::parse(child.text));
+    } catch (const json::exception& error) {
       child.end = ChildOutcome::End::threw;
       child.text =
           std::string("its result cannot be read, is a number not finite? ") + error.what();

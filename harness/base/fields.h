@@ -4,9 +4,9 @@
 
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
-#include <string>
 #include <tuple>
+
+#include "harness/base/json.h"
 
 namespace harness {
 
@@ -45,17 +45,15 @@ std::string described(const Row& row) {
 }
 
 // null for a number that is not finite, which JSON cannot express.
-inline nlohmann::json number(double value) {
-  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
-}
-inline double number_of(const nlohmann::json& value) {  // NaN for null
+inline json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+inline double number_of(const json& value) {  // NaN for null
   return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
 }
 
 // How a type is written as JSON, and its schema. Types that JSON does not have specialize it.
 template <class Value>
 struct FieldCodec {
-  static nlohmann::json write(const Value& value, bool nullable) {
+  static json write(const Value& value, bool nullable) {
     if constexpr (std::is_same_v<Value, double>) return number(value);
     if constexpr (std::is_same_v<Value, std::string>) {
       if (nullable && value.empty()) return nullptr;
@@ -63,7 +61,7 @@ struct FieldCodec {
     return value;
   }
 
-  static void read(const nlohmann::json& from, Value& value, bool nullable) {
+  static void read(const json& from, Value& value, bool nullable) {
     if constexpr (std::is_same_v<Value, double>) {
       value = nullable ? number_of(from) : from.get<double>();
     } else if (nullable && from.is_null()) {
@@ -98,10 +96,10 @@ void write_fields(Json& to, const Table& table, const Object& object) {
 
 // Throws json::exception where a field is missing or of another type.
 template <class Table, class Object>
-void read_fields(const nlohmann::json& from, const Table& table, Object& object) {
+void read_fields(const json& from, const Table& table, Object& object) {
   for_each_field(table, [&](const auto& row) {
     using Value = typename std::decay_t<decltype(row)>::Type;
-    const nlohmann::json& place = *row.traits.inside ? from.at(row.traits.inside) : from;
+    const json& place = *row.traits.inside ? from.at(row.traits.inside) : from;
     if (row.traits.nullable && !place.contains(row.name)) return;  // as null
     FieldCodec<Value>::read(place.at(row.name), object.*row.member, row.traits.nullable);
   });

@@ -2,10 +2,6 @@
 
 #include <fcntl.h>
 #include <sys/stat.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
 
 #include "harness/base/errors.h"
 #include "harness/base/json.h"
@@ -13,8 +9,6 @@
 
 namespace harness {
 namespace {
-
-using nlohmann::json;
 
 std::string check_of(const json& line) { return fnv1a(compact(line)); }
 

@@ -1,4 +1,4 @@
-#define VALIJSON_USE_EXCEPTIONS 1  // a definition for all sources would forbid the precompiled header
+#define VALIJSON_USE_EXCEPTIONS 1  // here alone: for all, it would forbid the precompiled header
 #include "harness/base/json.h"
 
 #include <cmath>
@@ -9,14 +9,12 @@
 #include <valijson/schema_parser.hpp>
 #include <valijson/validation_results.hpp>
 #include <valijson/validator.hpp>
-#include <vector>
 
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
 
 namespace harness {
 
-using nlohmann::json;
 using nlohmann::ordered_json;
 
 namespace {

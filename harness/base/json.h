@@ -6,6 +6,8 @@
 
 namespace harness {
 
+using nlohmann::json;
+
 // What a number must be, on the command line or in a file.
 struct Bounds {
   static constexpr double huge = 1e300;  // as a bound: none
@@ -31,20 +33,20 @@ struct Bounds {
 
 // JSON from outside, // comments or not. name: the file, or what else it is. Throws UsageError,
 // naming it, if it is not JSON, has a key twice, or is nested deeper than our documents.
-nlohmann::json parse_document(const std::string& text, const std::string& name);
+json parse_document(const std::string& text, const std::string& name);
 
 // Throws UsageError, naming `path` and the first place that does not fit, unless `document` is as
 // the JSON schema `rules` says. kind: of file, for the message.
-void check_fits(const nlohmann::json& document, const nlohmann::json& rules,
-                const std::string& kind, const std::string& path);
+void check_fits(const json& document, const json& rules, const std::string& kind,
+                const std::string& path);
 
 // A value for a message: short, whatever it is.
-std::string value_text(const nlohmann::json& value);
+std::string value_text(const json& value);
 
 // ---- JSON as people read it: short values on one line, a list of points one a line ----
 
 // As programs read it: without spaces. Text that is not UTF-8 keeps what can be kept.
-std::string compact(const nlohmann::json& value);
+std::string compact(const json& value);
 
 // A document for a repository: entries of its objects and items of its lists are a line each.
 std::string document_text(const nlohmann::ordered_json& document);

@@ -1,10 +1,11 @@
 #include "harness/base/text.h"
 
+#include <re2/re2.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <iomanip>
-#include <sstream>
 
 namespace harness {
 
@@ -33,24 +34,10 @@ void append(std::string& list, const std::string& more, const char* separator) {
 }
 
 std::string harmless(const std::string& text) {
-  std::string result;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto byte = [&](std::size_t k) -> unsigned {
-      return i + k < text.size() ? static_cast<unsigned char>(text[i + k]) : 0;
-    };
-    const unsigned last = byte(2);
-    std::size_t taken = 0;  // bytes of a character that is replaced
-    if (byte(0) < 0x20 || byte(0) == 0x7F) taken = 1;
-    if (byte(0) == 0xC2 && byte(1) >= 0x80 && byte(1) < 0xA0) taken = 2;  // U+0080 to U+009F
-    // U+200B to U+200F, U+2028 to U+202E, U+2060 to U+206F, and the byte order mark.
-    if (byte(0) == 0xE2 && byte(1) == 0x80 &&
-        ((last >= 0x8B && last <= 0x8F) || (last >= 0xA8 && last <= 0xAE)))
-      taken = 3;
-    if (byte(0) == 0xE2 && byte(1) == 0x81 && last >= 0xA0 && last <= 0xAF) taken = 3;
-    if (byte(0) == 0xEF && byte(1) == 0xBB && last == 0xBF) taken = 3;
-    result += taken > 0 ? '?' : text[i];
-    if (taken > 1) i += taken - 1;
-  }
+  static const RE2 signs(
+      R"([\x00-\x1f\x7f-\x{9f}\x{200b}-\x{200f}\x{2028}-\x{202e}\x{2060}-\x{206f}\x{feff}])");
+  std::string result = text;
+  RE2::GlobalReplace(&result, signs, "?");
   return result;
 }
 

@@ -1,31 +1,12 @@
 // Verbs: how they declare their options, the list of them, and what they share.
 #pragma once
 
-#include <unistd.h>
-
-#include <chrono>
-#include <cstdint>
-#include <functional>
 #include <initializer_list>
 #include <iostream>
-#include <map>
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <optional>
-#include <string>
-#include <utility>
-#include <variant>
-#include <vector>
 
-#include "harness/base/errors.h"
-#include "harness/base/files.h"
-#include "harness/base/interrupt.h"
-#include "harness/base/journal.h"
 #include "harness/base/json.h"
 #include "harness/base/text.h"
-#include "harness/points/contestant.h"
 #include "harness/run/sweep.h"
-#include "harness/scenes/scene.h"
 
 namespace CLI {
 class App;
@@ -158,8 +139,8 @@ inline std::vector<Verb> verbs() {
 struct SceneOptions {
   std::string scene;
   Numbers n;
-  Words set;                                                        // NAME=NUMBER
-  std::string pins, load, floor, rest, weld, thickness, triangles;  // for a mesh
+  Words set;                                // NAME=NUMBER
+  std::map<std::string, std::string> mesh;  // its parts (with_mesh_parts) but its bodies
   Words body, body_then;
   int least_n = 2;  // of --n
 
@@ -244,20 +225,20 @@ struct OutputOptions {
 std::string default_output(const std::string& stem, const std::string& ending, bool last = false);
 
 struct Finished {
-  nlohmann::json document = nullptr;  // null: there is nothing to write
-  bool complete = true;               // false: interrupted
-  int code = success;                 // if complete
+  json document = nullptr;  // null: there is nothing to write
+  bool complete = true;     // false: interrupted
+  int code = success;       // if complete
 };
 
 // A run that can be interrupted and resumed.
 struct Undertaking {
-  std::string stem;               // of the default output's name
-  nlohmann::json context, suite;  // must agree with a resumed run's (identity())
-  const char* rows;               // the list of results in its file: "points", "matrix" or "rows"
-  const char* what;               // the same in messages
+  std::string stem;     // of the default output's name
+  json context, suite;  // must agree with a resumed run's (identity())
+  const char* rows;     // the list of results in its file: "points", "matrix" or "rows"
+  const char* what;     // the same in messages
   // Runs what the journal lacks. before: context of the resumed run, or null.
-  std::function<Finished(Journal& journal, const nlohmann::json& before)> run;
-  std::function<void(const nlohmann::json& result, Journal&)> add = [](auto&&...) {};
+  std::function<Finished(Journal& journal, const json& before)> run;
+  std::function<void(const json& result, Journal&)> add = [](auto&&...) {};
   std::function<std::size_t(const Journal&)> count = [](const Journal& j) {
     return j.known().size();
   };
@@ -275,16 +256,15 @@ int carry_out(const OutputOptions& options, const Undertaking& undertaking);
 // is 0, each file is moved atomically into the folder of `out` and named on stdout.
 int draw(const std::string& script, const Words& arguments, const std::string& out);
 
-bool is_sweep(const nlohmann::json& document);  // over strain, resolution or step
+bool is_sweep(const json& document);  // over strain, resolution or step
 
 // A result as text, as wide as the terminal. name: in hints. all: every contestant, and failures.
-std::string text_of_result(const nlohmann::json& document, const std::string& name,
-                           bool all = false);
+std::string text_of_result(const json& document, const std::string& name, bool all = false);
 
 // A result as plots/ reads it: a sweep with its analysis. Throws UsageError if it is untimed.
-nlohmann::json with_analysis(nlohmann::json document);
+json with_analysis(json document);
 
 // Figures of a result, whose names begin with `name`. folder: "" is the current one.
-int draw_figures(nlohmann::json document, const std::string& name, const std::string& folder);
+int draw_figures(json document, const std::string& name, const std::string& folder);
 
 }  // namespace harness

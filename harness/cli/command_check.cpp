@@ -1,13 +1,10 @@
 // bench check: tests what every solver must fulfil. bench answers: solvers against exact solutions.
-#include <algorithm>
 #include <iomanip>
-#include <sstream>
 
 #include "harness/answers/answer.h"
 #include "harness/cli/command.h"
 #include "harness/points/context.h"
 #include "harness/stability/conformance.h"
-#include "solvers/registry.h"
 
 namespace harness {
 namespace {
@@ -75,9 +72,9 @@ struct Answers : OutputOptions {
 
   int run(const Words& typed) {
     const auto plan = plan_answers(pattern_of("--answer", answer), solver_pattern(solver));
-    nlohmann::json context = machine_context();
+    json context = machine_context();
     context["selection"] = {{"solver", solver}, {"answer", answer}, {"timeout", timeout}};
-    const auto compute = [&](Journal& journal, const nlohmann::json&) -> Finished {
+    const auto compute = [&](Journal& journal, const json&) -> Finished {
       Progress progress;
       const AnswerOutcome outcome = run_answers(plan, timeout, journaled_events(journal, progress));
       if (!outcome.complete) return {.complete = false};

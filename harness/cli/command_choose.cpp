@@ -1,6 +1,4 @@
 // bench choose: which solver to take for a scene, at which step, and what a frame costs.
-#include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "harness/analysis/measured_point.h"
@@ -11,13 +9,11 @@
 #include "harness/judge/reference_routes.h"
 #include "harness/points/tuned.h"
 #include "harness/run/choose.h"
-#include "harness/run/execute.h"
 
 namespace harness {
 namespace {
 
 using analysis::percent;
-using nlohmann::json;
 
 std::string ms(double seconds) { return number_text(1e3 * seconds, 3); }
 

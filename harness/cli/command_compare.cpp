@@ -1,21 +1,16 @@
 // bench compare, baseline and ab: two results point by point, a result for the next comparisons,
 // and two builds of this program timed against each other.
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
 
 #include "harness/base/child_process.h"
 #include "harness/base/timing_lock.h"
 #include "harness/cli/command.h"
 #include "harness/compare/comparison.h"
 #include "harness/points/result_file.h"
-#include "harness/run/measure_point.h"
 
 namespace harness {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
 // Options of the verbs that compare: a gate, and reports beside the table on stdout.
 struct CompareOptions {

@@ -1,13 +1,8 @@
 // bench film: a scene as pictures, a film, or files for other programs.
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
 #include <numeric>
 #include <set>
-#include <stdexcept>
 
 #include "harness/analysis/measured_point.h"
-#include "harness/base/statistics.h"
 #include "harness/cli/command.h"
 #include "harness/film/film.h"
 #include "harness/points/tuned.h"

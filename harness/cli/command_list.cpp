@@ -1,20 +1,12 @@
 // bench list: prints solvers, scenes, suites and other lists.
-#include <algorithm>
-#include <functional>
-#include <span>
-#include <tuple>
 
 #include "harness/answers/answer.h"
 #include "harness/claims/claims.h"
 #include "harness/cli/command.h"
-#include "harness/points/point_json.h"
-#include "harness/points/schema.h"
 #include "harness/stability/hard_case.h"
 
 namespace harness {
 namespace {
-
-using nlohmann::json;
 
 struct List {
   std::string name;

@@ -1,20 +1,10 @@
 // bench point: runs single points in this process, for bench ab and other programs.
-#include <cmath>
-#include <tuple>
 
-#include "harness/base/files.h"
-#include "harness/base/json.h"
 #include "harness/cli/command.h"
 #include "harness/points/context.h"
-#include "harness/points/point_json.h"
-#include "harness/points/suite.h"
-#include "harness/run/execute.h"
-#include "harness/run/measure_point.h"
 
 namespace harness {
 namespace {
-
-using nlohmann::json;
 
 void check_spec(PointSpec& spec) {
   const auto type = checked_scene(spec.scene);

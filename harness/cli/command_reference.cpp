@@ -1,7 +1,5 @@
 // bench reference: the trajectories that errors are measured against.
-#include <filesystem>
 
-#include "harness/base/json.h"
 #include "harness/cli/command.h"
 #include "harness/judge/reference_routes.h"
 #include "harness/points/context.h"

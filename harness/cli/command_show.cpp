@@ -1,20 +1,13 @@
 // bench show, budget, claims, results, report and plot: result files printed and drawn.
-#include <algorithm>
-#include <filesystem>
-#include <sstream>
-#include <string_view>
 
 #include "harness/analysis/findings.h"
 #include "harness/answers/answer.h"
-#include "harness/base/files.h"
 #include "harness/claims/claims.h"
 #include "harness/cli/command.h"
 #include "harness/tables/tables.h"
 
 namespace harness {
 namespace {
-
-using nlohmann::json;
 
 // Throws UsageError for results of --untimed: what is made of these ranks times.
 std::vector<NamedResult> read_all(const Words& files, ResultKinds kinds) {

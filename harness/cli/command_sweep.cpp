@@ -1,21 +1,15 @@
 // bench --sweep strain|resolution|step|stability, and the sweeps of a suite.
-#include <utility>
 
-#include "harness/base/journal.h"
 #include "harness/base/timing_lock.h"
 #include "harness/cli/command.h"
 #include "harness/judge/reference_routes.h"
 #include "harness/points/context.h"
 #include "harness/points/result_file.h"
-#include "harness/run/execute.h"
 #include "harness/run/machine_noise.h"
-#include "harness/run/sweep.h"
 #include "harness/stability/stability.h"
 
 namespace harness {
 namespace {
-
-using nlohmann::json;
 
 // Beyond this, even a few steps of a slow reference route take too long to time.
 constexpr int most_timed_vertices = 20000;

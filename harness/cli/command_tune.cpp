@@ -1,21 +1,14 @@
 // bench tune: searches the settings of each solver and writes them to a file that suites use.
-#include <algorithm>
-#include <filesystem>
 #include <iomanip>
-#include <limits>
 
 #include "harness/base/table.h"
 #include "harness/base/timing_lock.h"
 #include "harness/cli/command.h"
 #include "harness/points/context.h"
-#include "harness/points/point_json.h"
-#include "harness/run/execute.h"
 #include "harness/run/tune.h"
 
 namespace harness {
 namespace {
-
-using nlohmann::json;
 
 // Solvers with tunable settings; one that is not a contestant must be named in full.
 std::vector<std::string> chosen_solvers(const std::string& text, const SweepSpec& scene) {

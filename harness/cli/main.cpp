@@ -1,12 +1,8 @@
 // bench: the command line. Only this file includes CLI11, which takes ten seconds to compile.
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdlib>
-#include <filesystem>
-#include <map>
 
 #include "harness/base/child_process.h"
-#include "harness/base/files.h"
 #include "harness/cli/command.h"
 #include "harness/compare/comparison.h"
 #include "harness/points/context.h"
@@ -94,7 +90,7 @@ constexpr const char* description =
     "  bench help VERB                          the options of a verb (SUBCOMMANDS, below)\n";
 
 std::string version_text() {
-  const nlohmann::json build = machine_context().at("build");
+  const json build = machine_context().at("build");
   const std::string commit = build.at("git");
   return std::string("bench ") + version() +
          (commit.empty() ? "" : ", commit " + commit.substr(0, 12)) +
@@ -131,7 +127,7 @@ int guarded(const std::function<int()>& work) {
     return code;
   } catch (const UsageError& error) {
     return failed(error.what(), usage_error);
-  } catch (const nlohmann::json::exception& error) {
+  } catch (const json::exception& error) {
     // Schemas are checked where files are read; what a schema leaves open is reported here.
     return failed(std::string("a value in a file has the wrong type: ") + error.what(),
                   usage_error);

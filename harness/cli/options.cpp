@@ -1,20 +1,8 @@
-#include <algorithm>
-#include <limits>
 
-#include "harness/base/errors.h"
-#include "harness/base/files.h"
-#include "harness/base/json.h"
-#include "harness/base/pattern.h"
-#include "harness/base/text.h"
 #include "harness/cli/command.h"
-#include "harness/judge/reference.h"
-#include "harness/scenes/scene.h"
 #include "harness/scenes/scene_folder.h"
-#include "solvers/registry.h"
 
 namespace harness {
-
-using nlohmann::json;
 
 void SceneOptions::declare(const Command& to, const std::string& standard) {
   to.option("--scene", scene,
@@ -24,50 +12,38 @@ void SceneOptions::declare(const Command& to, const std::string& standard) {
   to.option("--n", n, "size of the scene; a resolution sweep takes several, e.g. 20,40,80", "N",
             Bounds::whole_number(least_n));
   to.repeatable("--set", set, "a parameter of the scene; repeatable", "NAME=NUMBER");
-  to.option("--pins", pins,
-            "of mesh:FILE.obj: which vertices are pinned, e.g. 'y > 1.2 and x <= 0' or 'v1 or "
-            "near(1:2:0)', a vertex of the file and the nearest one",
-            "WHERE");
+  const auto part = [&](const std::string& name, const std::string& help, const char* type) {
+    to.option("--" + name, mesh[name], "of mesh:FILE.obj: " + help, type);
+  };
+  part("pins",
+       "which vertices are pinned, e.g. 'y > 1.2 and x <= 0' or 'v1 or near(1:2:0)', a vertex of "
+       "the file and the nearest one",
+       "WHERE");
   to.repeatable("--collider", body, "of mesh:FILE.obj: the body, a closed mesh; repeatable",
                 "FILE.obj");
   to.repeatable("--collider-then", body_then,
                 "of mesh:FILE.obj: the bodies moved and turned as one, at the end of the run; "
                 "repeatable, at equal intervals",
                 "FILE.obj");
-  to.option("--thickness", thickness,
-            "of mesh:FILE.obj: bodies are open surfaces, seen from the front, this thick",
-            "DISTANCE");
-  to.option("--triangles", triangles,
-            "of mesh:FILE.obj: midpoints (each triangle keeps its shape) or springs (default: what "
-            "makes no quad is held by springs)",
-            "HOW");
-  to.option("--floor", floor, "of mesh:FILE.obj: a floor at this height, in the file's unit", "Y");
-  to.option("--load", load,
-            "of mesh:FILE.obj: the vertices that bear the weight `load` (--set load=KG), as pins",
-            "WHERE");
-  to.option("--rest", rest,
-            "of mesh:FILE.obj: the unstretched shape, with the same faces and lines", "FILE.obj");
-  to.option("--weld", weld,
-            "of mesh:FILE.obj: corners this close, in the file's unit, are one vertex; 0: none",
-            "DISTANCE");
+  part("thickness", "bodies are open surfaces, seen from the front, this thick", "DISTANCE");
+  part("triangles",
+       "midpoints (each triangle keeps its shape) or springs (default: what makes no quad is held "
+       "by springs)",
+       "HOW");
+  part("floor", "a floor at this height, in the file's unit", "Y");
+  part("load", "the vertices that bear the weight `load` (--set load=KG), as pins", "WHERE");
+  part("rest", "the unstretched shape, with the same faces and lines", "FILE.obj");
+  part("weld", "corners this close, in the file's unit, are one vertex; 0: none", "DISTANCE");
 }
 
 std::string SceneOptions::name() const {
-  const auto joined = [](const Words& files) {
-    std::string all;
-    for (const std::string& file : files) append(all, file, ";");
-    return all;
-  };
   if (names_folder(scene)) return find_scene(scene)->name;
-  return with_mesh_parts(scene, {{"pins", pins},
-                                 {"load", load},
-                                 {"body", joined(body)},
-                                 {"body_then", joined(body_then)},
-                                 {"thickness", thickness},
-                                 {"triangles", triangles},
-                                 {"floor", floor},
-                                 {"rest", rest},
-                                 {"weld", weld}});
+  std::vector<std::pair<std::string, std::string>> parts(mesh.begin(), mesh.end());
+  for (const auto& [name, files] : {std::pair("body", &body), {"body_then", &body_then}}) {
+    std::string& all = parts.emplace_back(name, "").second;
+    for (const std::string& file : *files) append(all, file, ";");
+  }
+  return with_mesh_parts(scene, parts);
 }
 
 SceneParameters SceneOptions::given_parameters() const {

@@ -1,33 +1,19 @@
-#include <unistd.h>
 
-#include <algorithm>
-#include <filesystem>
 #include <fstream>
-#include <iostream>
-#include <limits>
-#include <optional>
 #include <set>
-#include <sstream>
-#include <utility>
 
 #include "harness/analysis/findings.h"
 #include "harness/answers/answer.h"
 #include "harness/base/child_process.h"
 #include "harness/base/clock.h"
-#include "harness/base/errors.h"
-#include "harness/base/files.h"
-#include "harness/base/interrupt.h"
-#include "harness/base/text.h"
 #include "harness/claims/claims.h"
 #include "harness/cli/command.h"
 #include "harness/points/context.h"
-#include "harness/points/result_file.h"
 #include "harness/tables/tables.h"
 
 namespace harness {
 namespace {
 
-using nlohmann::json;
 namespace fs = std::filesystem;
 
 bool exists(const std::string& path) {

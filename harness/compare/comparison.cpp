@@ -1,11 +1,7 @@
 #include "harness/compare/comparison.h"
 
-#include <algorithm>
-#include <cmath>
 #include <deque>
-#include <map>
 #include <set>
-#include <tuple>
 
 #include "harness/base/statistics.h"
 #include "harness/base/text.h"
@@ -18,8 +14,6 @@ std::string per_cent(double ratio) {
 }
 
 namespace {
-
-using nlohmann::json;
 
 void note_counters(const ComparedPoint& base, const ComparedPoint& next, const Gate& gate,
                    PointChange& result) {
@@ -83,23 +77,18 @@ void note_failures(const ComparedPoint& base, const ComparedPoint& next, const G
 
 // Which steps a search tried depends on times: one that only one result tried, or gave up because a
 // better one was known, is not evidence.
-class Tried {
- public:
+struct Tried {
   explicit Tried(const ComparedResult& result) {
-    for (const ComparedPoint& point : result.points) {
-      searches_.insert(point.search());
-      if (point.best) best_.insert(point.search());
-    }
+    for (const ComparedPoint& point : result.points) best[point.search()] |= point.best;
   }
   bool covers(const ComparedPoint& point) const {
-    return point.searched && searches_.contains(point.search());
+    return point.searched && best.contains(point.search());
   }
   bool gave_up(const ComparedPoint& point) const {
-    return point.searched && point.status == "timeout" && best_.contains(point.search());
+    return covers(point) && point.status == "timeout" && best.at(point.search());
   }
 
- private:
-  std::set<std::string> searches_, best_;
+  std::map<std::string, bool> best;  // searches, and whether a step of each was best
 };
 
 constexpr double same_speed = 0.05;     // of two machines: |log(ratio)| of the fixed kernel's times

@@ -1,9 +1,6 @@
 // Reads gates, results and baselines; writes baselines.
 #include "harness/base/files.h"
 
-#include <array>
-
-#include "harness/base/errors.h"
 #include "harness/base/json.h"
 #include "harness/base/text.h"
 #include "harness/compare/comparison.h"
@@ -14,7 +11,6 @@
 namespace harness {
 namespace {
 
-using nlohmann::json;
 using nlohmann::ordered_json;
 
 constexpr const char* baseline_schema = "inextensible-baseline/1";

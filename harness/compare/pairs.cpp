@@ -1,4 +1,3 @@
-#include <algorithm>
 
 #include "harness/base/statistics.h"
 #include "harness/compare/comparison.h"

@@ -1,6 +1,4 @@
 // The printers of a comparison: terminal, JUnit XML, Markdown.
-#include <algorithm>
-#include <sstream>
 #include <unordered_map>
 
 #include "harness/base/table.h"

@@ -1,19 +1,9 @@
 #include "harness/points/contestant.h"
 
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <memory>
-#include <stdexcept>
-#include <utility>
-
-#include "harness/base/errors.h"
 #include "harness/base/json.h"
 
 namespace harness {
 namespace {
-
-using nlohmann::json;
 
 // Building takes a while where there is a body, and suites ask for one scene again and again.
 const inextensible::Problem& small_problem(const SceneType& type, const SceneParameters& given) {

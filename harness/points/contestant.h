@@ -2,16 +2,9 @@
 // part several times.
 #pragma once
 
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
-
 #include "harness/base/errors.h"
 #include "harness/base/pattern.h"
 #include "harness/points/point_json.h"
-#include "harness/scenes/scene.h"
-#include "solvers/registry.h"
 
 namespace harness {
 
@@ -45,7 +38,7 @@ std::string label_of(const Contestant& contestant);
 
 // A list of "icd", or {"name": "icd_loose", "solver": "icd", "settings": {...}, "label": "...",
 // "unranked": true}, as in a suite that fits its schema. All throw UsageError, naming `where`.
-Contestants read_contestants(const nlohmann::json& solvers, const std::string& where);
+Contestants read_contestants(const json& solvers, const std::string& where);
 // The solvers of a suite that names none: all that compete and support every part of the scene. On
 // a chain, a solver that coincides with another one there is left out.
 Contestants competitors(const SceneType& type, const SceneParameters& given);
@@ -65,7 +58,7 @@ UsageError no_solver(const std::string& name, const std::vector<std::string>& kn
 bool matches(const Pattern& pattern, const std::string& solver);
 
 // read_contestants() reads it back.
-void to_json(nlohmann::json& to, const Contestant& contestant);
+void to_json(json& to, const Contestant& contestant);
 
 // Adds the same solver with the same settings right after it, as <name>_again: the difference
 // between two equal contestants is the noise of a result. Does nothing if `name` is absent or its

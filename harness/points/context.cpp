@@ -6,20 +6,17 @@
 #include <omp.h>
 #include <sys/utsname.h>
 #include <umfpack.h>
-#include <unistd.h>
 
 #include <Eigen/Core>
 #include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
-#include <memory>
 #include <thread>
 
 #include "build_info.h"  // made by CMake
+#include "harness/base/child_process.h"
 #include "harness/base/files.h"
-#include "harness/base/json.h"
 #include "harness/base/text.h"
 #include "harness/points/plugins.h"
 
@@ -32,8 +29,6 @@ char* openblas_get_corename();
 
 namespace harness {
 namespace {
-
-using nlohmann::json;
 
 std::string cpu_field(const std::string& name) {
   std::ifstream file("/proc/cpuinfo");
@@ -51,13 +46,9 @@ constexpr const char* program_parts =
 
 // Output of git in the source folder, "" without git or outside a checkout.
 std::string git(const std::string& arguments) {
-  const std::string command = "git -C '" INEXTENSIBLE_SOURCE_DIR "' " + arguments + " 2>/dev/null";
-  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
-  std::string text;
-  std::array<char, 256> buffer{};
-  while (pipe && fgets(buffer.data(), buffer.size(), pipe.get())) text += buffer.data();
-  while (!text.empty() && text.back() == '\n') text.pop_back();
-  return text;
+  const std::string command = "git -C '" INEXTENSIBLE_SOURCE_DIR "' " + arguments;
+  const std::string text = run_program({"sh", "-c", command}, 60).out;
+  return text.substr(0, text.find_last_not_of('\n') + 1);
 }
 
 std::string now() {

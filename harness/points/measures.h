@@ -2,9 +2,7 @@
 #pragma once
 
 #include <array>
-#include <limits>
 #include <map>
-#include <string>
 #include <vector>
 
 #include "harness/base/fields.h"

@@ -2,13 +2,9 @@
 
 #include <dlfcn.h>
 
-#include <algorithm>
 #include <cfenv>
 #include <clocale>
-#include <cstring>
 #include <deque>
-#include <filesystem>
-#include <stdexcept>
 
 #include "harness/base/child_process.h"
 #include "harness/base/errors.h"

@@ -1,7 +1,5 @@
 #include "harness/points/point.h"
 
-#include <algorithm>
-
 #include "harness/base/statistics.h"
 #include "harness/base/text.h"
 

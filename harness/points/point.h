@@ -2,12 +2,6 @@
 // means.
 #pragma once
 
-#include <array>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "harness/points/measures.h"
 #include "harness/scenes/scene.h"
 #include "solvers/registry.h"

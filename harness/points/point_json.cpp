@@ -4,8 +4,6 @@
 
 namespace harness {
 
-using nlohmann::json;
-
 namespace {
 
 json seconds_json(const std::vector<double>& samples) {

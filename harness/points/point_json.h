@@ -2,9 +2,6 @@
 // tables of its fields are here, and in measures.h and work_counters.h.
 #pragma once
 
-#include <variant>
-
-#include "harness/base/fields.h"
 #include "harness/points/point.h"
 
 template <>
@@ -23,8 +20,8 @@ struct nlohmann::adl_serializer<std::variant<double, std::string>> {  // a setti
 
 namespace harness {
 
-void to_json(nlohmann::json& to, PointStatus status);
-void from_json(const nlohmann::json& from, PointStatus& status);
+void to_json(json& to, PointStatus status);
+void from_json(const json& from, PointStatus& status);
 
 template <>
 inline nlohmann::ordered_json FieldCodec<PointStatus>::schema(const FieldTraits&) {
@@ -50,14 +47,14 @@ inline nlohmann::ordered_json FieldCodec<std::vector<int>>::schema(const FieldTr
 // A list of rows, each a list of a struct's numbers.
 template <class Row, double Row::*... members>
 struct RowsCodec {
-  static nlohmann::json write(const std::vector<Row>& rows, bool /*nullable*/) {
-    nlohmann::json list = nlohmann::json::array();
-    for (const Row& row : rows) list.push_back(nlohmann::json::array({number(row.*members)...}));
+  static json write(const std::vector<Row>& rows, bool /*nullable*/) {
+    json list = json::array();
+    for (const Row& row : rows) list.push_back(json::array({number(row.*members)...}));
     return list;
   }
-  static void read(const nlohmann::json& from, std::vector<Row>& rows, bool /*nullable*/) {
+  static void read(const json& from, std::vector<Row>& rows, bool /*nullable*/) {
     rows.clear();
-    for (const nlohmann::json& row : from) {
+    for (const json& row : from) {
       std::size_t column = 0;
       rows.push_back({});
       ((rows.back().*members = number_of(row.at(column++))), ...);
@@ -168,16 +165,16 @@ void for_each_table(Point& point, const Visit& visit) {
   visit(measure_fields, point.measures);
 }
 
-nlohmann::json to_json(const inextensible::WorkCounters& work);
-nlohmann::json to_json(const PointResult& point);
-nlohmann::json to_json(const Samples& samples);
+json to_json(const inextensible::WorkCounters& work);
+json to_json(const PointResult& point);
+json to_json(const Samples& samples);
 
 // The way back: to_json(point_of(j)) == j. All throw json::exception for anything that is not what
 // they read.
-inextensible::WorkCounters work_of(const nlohmann::json& work);
-PointResult point_of(const nlohmann::json& point);
-Samples samples_of(const nlohmann::json& samples);
-PointSpec spec_of(const nlohmann::json& point);
+inextensible::WorkCounters work_of(const json& work);
+PointResult point_of(const json& point);
+Samples samples_of(const json& samples);
+PointSpec spec_of(const json& point);
 
 // All of a point that is not measured: two runs of one key may stand for each other.
 std::string key_of(const PointSpec& spec);

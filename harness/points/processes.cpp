@@ -4,12 +4,8 @@
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
-#include <algorithm>
 #include <deque>
-#include <map>
-#include <stdexcept>
 
 #include "harness/base/clock.h"
 #include "harness/base/files.h"
@@ -25,7 +21,6 @@ using inextensible::Positions;
 using inextensible::State;
 using inextensible::Status;
 using inextensible::StepResult;
-using nlohmann::json;
 
 // A program whose standard input and output are ours. Its errors go where ours go, and it ends with
 // this process at the latest.

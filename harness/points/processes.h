@@ -2,8 +2,6 @@
 // goes to them as files (scenes/scene_folder.h), steps as numbers through pipes (docs/plugins.md).
 #pragma once
 
-#include <string>
-
 #include "solvers/methods/backend.h"
 
 namespace harness {

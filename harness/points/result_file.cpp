@@ -1,24 +1,16 @@
 #include "harness/points/result_file.h"
 
-#include <algorithm>
-#include <cmath>
-#include <map>
 #include <set>
-#include <span>
 
-#include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/json.h"
 #include "harness/base/statistics.h"
 #include "harness/base/text.h"
-#include "harness/points/contestant.h"
-#include "harness/points/point_json.h"
 #include "harness/points/schema.h"
 
 namespace harness {
 namespace {
 
-using nlohmann::json;
 using Pointer = json::json_pointer;
 
 // One entry a repetition, in Google Benchmark's own format; compare.py reads them.

@@ -1,46 +1,38 @@
 // The result file, schema inextensible-bench/1 (configs/result.schema.json).
 #pragma once
 
-#include <array>
-#include <nlohmann/json.hpp>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "harness/points/point.h"
 #include "harness/points/suite.h"
 
 namespace harness {
 
 // context: machine_context() as it was before the sweep ran. references:
 // ReferenceFolder::summaries().
-nlohmann::json result_document(nlohmann::json context, const Suite& suite,
-                               const std::vector<std::string>& command, bool complete,
-                               const std::vector<PointResult>& points,
-                               nlohmann::json references = nlohmann::json::array());
+json result_document(json context, const Suite& suite, const std::vector<std::string>& command,
+                     bool complete, const std::vector<PointResult>& points,
+                     json references = json::array());
 
 // As it is written: one point a line.
-std::string result_text(const nlohmann::json& document);
+std::string result_text(const json& document);
 
 // false: it was made while others may have been timed, so its times mean nothing.
-bool is_timed(const nlohmann::json& document);
+bool is_timed(const json& document);
 
 // The kinds of documents that a reader accepts.
 enum class ResultKinds { sweeps, answers, all };  // sweeps: stability sweeps, too
 // Throws UsageError, naming the file, for a document of another kind, one that is not as its schema
 // says, and one that no run can have made: times that are not those of their samples, say.
-void check_result(const nlohmann::json& document, const std::string& path,
+void check_result(const json& document, const std::string& path,
                   ResultKinds kinds = ResultKinds::sweeps);
 // These replace characters that control a terminal.
-nlohmann::json parse_result(const std::string& text, const std::string& path,
-                            ResultKinds kinds = ResultKinds::sweeps);
-nlohmann::json read_result(const std::string& path, ResultKinds kinds = ResultKinds::sweeps);
-bool is_answers(const nlohmann::json& document);  // of `bench answers`
+json parse_result(const std::string& text, const std::string& path,
+                  ResultKinds kinds = ResultKinds::sweeps);
+json read_result(const std::string& path, ResultKinds kinds = ResultKinds::sweeps);
+bool is_answers(const json& document);  // of `bench answers`
 
 // A result, and what messages and tables call it.
 struct NamedResult {
   std::string name;
-  nlohmann::json document;
+  json document;
 };
 
 // Over all places where both stand: |log(time of one / time of the other)|, of the times of
@@ -57,16 +49,16 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PairNoise, pair, places, median, q95)
 std::optional<PairNoise> pair_noise(const std::vector<PointResult>& points, const std::string& one);
 
 // `context.noise` of a result file; none in files without a pair.
-std::optional<PairNoise> noise_of(const nlohmann::json& context);
+std::optional<PairNoise> noise_of(const json& context);
 
 // documents: results of one kind (check_result), at least one. Points that belong to one search for
 // a best step, or hard cases of one name, are taken from the first document that has any. The
 // second contestant of an A/A pair is left out; the largest noise of all pairs stands for all. The
 // rest of the context is the first one's. The table is complete if every document is. Throws
 // UsageError for documents of different kinds.
-nlohmann::json joined(const std::vector<nlohmann::json>& documents);
+json joined(const std::vector<json>& documents);
 
 // The same of files; throws UsageError, naming the file, for what is no result.
-nlohmann::json read_results(const std::vector<std::string>& paths);
+json read_results(const std::vector<std::string>& paths);
 
 }  // namespace harness

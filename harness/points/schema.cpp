@@ -1,18 +1,12 @@
 #include "harness/points/schema.h"
 
-#include <algorithm>
-#include <array>
-
-#include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/json.h"
-#include "harness/points/point_json.h"
 #include "harness/points/suite.h"
 
 namespace harness {
 namespace {
 
-using nlohmann::json;
 using nlohmann::ordered_json;
 
 const char* word_of(inextensible::Origin origin) {

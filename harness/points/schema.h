@@ -2,14 +2,7 @@
 // written by hand.
 #pragma once
 
-#include <nlohmann/json.hpp>
-#include <string>
-#include <tuple>
-#include <vector>
-
-#include "harness/base/fields.h"
 #include "harness/points/contestant.h"
-#include "harness/points/measures.h"
 
 namespace harness {
 
@@ -51,7 +44,6 @@ std::vector<std::string> counter_names();
 
 // Throws UsageError, naming `path` and the first place that does not fit, unless `document` is as
 // configs/<schema>.schema.json says.
-void check_schema(const nlohmann::json& document, const std::string& schema,
-                  const std::string& path);
+void check_schema(const json& document, const std::string& schema, const std::string& path);
 
 }  // namespace harness

@@ -1,29 +1,18 @@
 #include "harness/points/suite.h"
 
-#include <algorithm>
-#include <optional>
-
-#include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/json.h"
-#include "harness/base/pattern.h"
 #include "harness/base/text.h"
-#include "harness/points/point_json.h"
 #include "harness/points/schema.h"
 #include "harness/points/tuned.h"
 
 namespace harness {
 namespace {
 
-using nlohmann::json;
-
 void read_limits(const json& object, const std::string& where, SweepSpec& spec) {
   if (object.contains("limit") == object.contains("limits"))
     throw UsageError(where + ": give 'limit' or 'limits', for example \"limits\": [0.1, 0.01]");
-  if (object.contains("limit"))
-    spec.limits = {object.at("limit").get<double>()};
-  else
-    object.at("limits").get_to(spec.limits);
+  if (object.contains("limit")) spec.limits = {object.at("limit").get<double>()};
 }
 
 void read_steps(const json& steps, const std::string& where, SweepSpec& spec) {
@@ -48,21 +37,16 @@ void fit_steps_to_duration(double duration, bool coarsest_given, SweepSpec& spec
 
 SweepSpec read_sweep(const json& object, const std::string& where, const Tuned* tuned,
                      const std::string& same) {
-  SweepSpec spec;
-  object.at("sweep").get_to(spec.sweep);
-  object.at("scene").get_to(spec.scene);
+  SweepSpec spec = object;
   const auto type = checked_scene(spec.scene, where);
   spec.scene = type->name;  // of a mesh: with its content
   read_limits(object, where, spec);
   const json steps = object.value("steps", json::object());
   read_steps(steps, where, spec);
-  spec.solver_options = object.value("solver_options", spec.solver_options);
   for (const auto& [name, settings] : spec.solver_options) {
     const std::string place = where + ": 'solver_options'";
     check_settings(settings, place, checked_backend(name, place));
   }
-  spec.resolutions = object.value("resolutions", spec.resolutions);
-  spec.scene_parameters = object.value("scene_parameters", spec.scene_parameters);
   const bool solvers = object.contains("solvers");
   try {
     const SceneParameters complete = complete_parameters(*type, spec.scene_parameters);
@@ -124,17 +108,10 @@ json suite_document(const std::string& text, const std::string& path) {
 
 Suite suite_of(const json& document, const std::string& path) {
   const std::string where = "suite '" + path + "'";
-  Suite suite;
-  suite.name = document.value("name", "unnamed");
+  Suite suite = document;
   if (!has_form(suite.name, "[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}"))
     throw UsageError(where + ": 'name' is " + value_text(suite.name) +
                      ", must be letters, digits, _ . and - (results are named after it)");
-  suite.description = document.value("description", "");
-  suite.profile = document.value("profile", "custom");
-  suite.seed = document.value("seed", suite.seed);
-  suite.reps = document.value("reps", suite.reps);
-  suite.timeout = document.value("timeout", suite.timeout);
-  suite.finest_error = document.value("finest_error", suite.finest_error);
   suite.same = document.value("same", "");
   std::optional<Tuned> tuned;
   if (const std::string file = document.value("tuned", ""); !file.empty()) {
@@ -157,29 +134,16 @@ Suite parse_suite(const std::string& text, const std::string& path) {
 Suite read_suite(const std::string& path) { return parse_suite(read_file(path, "suite"), path); }
 
 json to_json(const Suite& suite) {
-  json sweeps = json::array();
+  json document = suite;
+  document["sweeps"] = json::array();
   for (const SweepSpec& s : suite.sweeps) {
-    sweeps.push_back({{"sweep", s.sweep},
-                      {"scene", s.scene},
-                      {"solvers", s.contestants},
-                      {"limits", s.limits},
-                      {"resolutions", s.resolutions},
-                      {"steps",
-                       {{"coarsest", s.coarsest},
-                        {"finest", s.finest},
-                        {"all", s.every_step},
-                        {"refine", s.refine}}},
-                      {"scene_parameters", s.scene_parameters},
-                      {"solver_options", s.solver_options}});
+    json& sweep = document["sweeps"].emplace_back(s);
+    sweep["solvers"] = s.contestants;
+    sweep["steps"] = {{"coarsest", s.coarsest},
+                      {"finest", s.finest},
+                      {"all", s.every_step},
+                      {"refine", s.refine}};
   }
-  json document = {{"name", suite.name},
-                   {"description", suite.description},
-                   {"profile", suite.profile},
-                   {"seed", suite.seed},
-                   {"reps", suite.reps},
-                   {"timeout", suite.timeout},
-                   {"finest_error", suite.finest_error},
-                   {"sweeps", sweeps}};
   if (!suite.same.empty()) document["same"] = suite.same;
   return document;
 }

@@ -1,12 +1,7 @@
 // A suite: what a sweep runs. Read from JSON (configs/*.json, schema configs/suite.schema.json).
 #pragma once
 
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
-
 #include "harness/points/contestant.h"
-#include "harness/points/point.h"
 
 namespace harness {
 
@@ -29,9 +24,11 @@ struct SweepSpec {
   SceneParameters scene_parameters;
   std::map<std::string, inextensible::Settings> solver_options;  // a contestant's own go first
 };
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(SweepSpec, sweep, scene, limits, resolutions,
+                                                scene_parameters, solver_options)
 
 struct Suite {
-  std::string name, description, profile;
+  std::string name = "unnamed", description, profile = "custom";
   std::uint64_t seed = 1;
   int reps = 3;         // samples of each point that may be best, the first one included
   double timeout = 60;  // s a point
@@ -44,6 +41,8 @@ struct Suite {
   // A run is stopped once it takes this many times as long as the fastest one there. Not in files.
   double far_behind = 30;
 };
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Suite, name, description, profile, seed, reps,
+                                                timeout, finest_error)
 
 std::vector<std::string> sweep_kinds();
 // Levels of error that best steps are searched for, loose to tight.
@@ -58,9 +57,9 @@ Suite read_suite(const std::string& path);
 Suite parse_suite(const std::string& text, const std::string& path);
 // Its two steps, for options that change the document in between: JSON that fits the schema, and
 // what it says.
-nlohmann::json suite_document(const std::string& text, const std::string& path);
-Suite suite_of(const nlohmann::json& document, const std::string& path);
+json suite_document(const std::string& text, const std::string& path);
+Suite suite_of(const json& document, const std::string& path);
 // parse_suite() reads it back.
-nlohmann::json to_json(const Suite& suite);
+json to_json(const Suite& suite);
 
 }  // namespace harness

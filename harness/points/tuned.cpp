@@ -1,22 +1,14 @@
 #include "harness/points/tuned.h"
 
-#include <algorithm>
-#include <filesystem>
-#include <variant>
-
-#include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/json.h"
 #include "harness/base/text.h"
 #include "harness/points/context.h"
-#include "harness/points/point_json.h"
 #include "harness/points/schema.h"
-#include "harness/scenes/scene.h"
 
 namespace harness {
 namespace {
 
-using nlohmann::json;
 // Two files with the same settings are the same to a sweep, whenever they were found.
 std::string hash_of(const std::vector<TunedEntry>& entries) {
   std::map<std::string, json> settings;

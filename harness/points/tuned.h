@@ -2,11 +2,6 @@
 // sizes and strain limits. The file is configs/tuned.json, its schema configs/tuned.schema.json.
 #pragma once
 
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
-
-#include "harness/points/contestant.h"
 #include "harness/points/suite.h"
 
 namespace harness {
@@ -27,8 +22,8 @@ struct TunedEntry {
   std::string solver;
   int budget = 0;  // most sets of settings that were to be tried at a place
   std::vector<TunedPlace> places;
-  nlohmann::json rule;     // tuning_rule() of when it was found
-  nlohmann::json context;  // date, commit and machine
+  json rule;     // tuning_rule() of when it was found
+  json context;  // date, commit and machine
 
   std::vector<SettingsAt> settings_at() const;
 };
@@ -45,7 +40,7 @@ struct Tuned {
 // Throws UsageError, naming file, key and value.
 Tuned parse_tuned(const std::string& text, const std::string& file);
 
-nlohmann::json tuned_document(const std::vector<TunedEntry>& entries);
+json tuned_document(const std::vector<TunedEntry>& entries);
 
 // Gives each solver under its own name its tuned settings, unless its entry or `given` overrides
 // them.
@@ -62,7 +57,7 @@ std::vector<int> smaller_sizes(const std::string& scene);
 
 // All that a search depends on except the programs that it times: the scene with its parameters,
 // sizes, limits, ladder and level of error, and the solver's settings, their defaults and ranges.
-nlohmann::json tuning_rule(const SweepSpec& scene, const inextensible::Backend& solver);
+json tuning_rule(const SweepSpec& scene, const inextensible::Backend& solver);
 
 // The first difference between the rule that an entry was found by and today's; "": there is none.
 std::string rule_change(const TunedEntry& entry);

@@ -1,23 +1,13 @@
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <iterator>
-#include <map>
 
 #include "harness/analysis/findings.h"
-#include "harness/base/errors.h"
-#include "harness/base/fields.h"
-#include "harness/base/statistics.h"
-#include "harness/base/table.h"
 #include "harness/base/text.h"
 #include "harness/claims/claims.h"
-#include "harness/points/result_file.h"
 #include "harness/tables/tables.h"
 
 namespace harness {
 
 using namespace analysis;  // tables print what was analysed
-using nlohmann::json;
 
 namespace {
 

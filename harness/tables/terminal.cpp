@@ -1,16 +1,11 @@
-#include <algorithm>
-#include <cmath>
-#include <map>
 
 #include "harness/analysis/findings.h"
-#include "harness/base/fields.h"
 #include "harness/base/text.h"
 #include "harness/tables/tables.h"
 
 namespace harness {
 
 using namespace analysis;  // tables print what was analysed
-using nlohmann::json;
 
 namespace {
 

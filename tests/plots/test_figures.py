@@ -55,8 +55,6 @@ def test_no_words_run_out_of_a_figure(pictures: dict) -> None:
     assert [name for all_of in pictures.values() for name, figure in all_of.items() if not fits(figure)] == []
 
 
-# ---- cost -----------------------------------------------------------------------------------------------------------
-
 @pytest.mark.parametrize("result, names", [
     (resolution_sweep("flag"), ["flag-resolution"]),
     (document([point("shake", vertices=n, limit=limit, best=True, error={"trajectory": 0.2}) for n in (20, 80) for limit in (0.1, 0.01)]),
@@ -100,8 +98,6 @@ def test_warnings(profile: str, complete: bool, warning: str) -> None:
     assert [part in words for part in ("QUICK PROFILE", "INCOMPLETE")] == [warning == "QUICK PROFILE", warning == "INCOMPLETE"]
 
 
-# ---- uncertainty ----------------------------------------------------------------------------------------------------
-
 @pytest.mark.parametrize("make, name", [(strain_sweep, "figure4a"), (resolution_sweep, "figure5b"), (step_sweep, "work-precision-chain")])
 def test_the_noise_of_a_pair_is_a_bar_and_the_second_no_curve(make, name: str) -> None:
     def bars(result: Json) -> list:
@@ -118,8 +114,6 @@ def test_the_noise_of_a_pair_is_a_bar_and_the_second_no_curve(make, name: str) -
     low, high = bar.get_ydata()
     assert high / low == pytest.approx(np.exp(0.2))
 
-
-# ---- step sweeps ----------------------------------------------------------------------------------------------------
 
 def test_time_against_error(pictures: dict) -> None:
     figure = pictures["step"]["work-precision-chain"]
@@ -140,8 +134,6 @@ def test_residuals_of_those_that_have_one(solvers: tuple[str, ...], names: list[
                                                                                     "last iteration: slope 3.00"]
 
 
-# ---- hard cases and known answers -------------------------------------------------------------------------------------
-
 def test_matrix_of_hard_cases(pictures: dict) -> None:
     figure = pictures["stability"]["matrix"]
     (matrix,) = figure.axes
@@ -159,8 +151,6 @@ def test_known_answers_have_a_panel_each_and_a_curve_for_each_solver(pictures: d
         assert sorted(len(line.get_xdata()) for line in curves(axes)) == [2, 3]
     assert len(legend_labels(figure)) == 2
 
-
-# ---- names and files ------------------------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("name", [solver["name"] for solver in committed("figure1.json")["legend"]["solvers"]])
 def test_no_code_knows_a_solver_by_name(name: str) -> None:

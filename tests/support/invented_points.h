@@ -3,19 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <initializer_list>
-#include <tuple>
-#include <utility>
 
 #include "harness/claims/claims.h"
 #include "support/invented_runs.h"
 
 namespace harness {
-
-using nlohmann::json;
 
 // The best point of its contestant, right to 2 %, in steps of two iterations.
 inline json point(const std::string& scene, const std::string& sweep, const std::string& solver,

@@ -1,14 +1,9 @@
 // Result documents whose times are made up, for tests of what is concluded from them.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "harness/points/point_json.h"
 
 namespace harness::invented {
-
-using nlohmann::json;
 
 // A run by nine samples, 0.1 % apart, the least as given: sure unless a test says otherwise.
 inline PointResult sampled(const std::string& scene, const std::string& sweep,

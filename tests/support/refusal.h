@@ -1,8 +1,6 @@
 // What a reader says when it refuses its input.
 #pragma once
 
-#include <string>
-
 #include "harness/base/errors.h"
 
 namespace harness {

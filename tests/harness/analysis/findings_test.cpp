@@ -3,10 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "harness/points/result_file.h"
-#include "solvers/registry.h"
 #include "support/invented_runs.h"
 
 namespace harness::analysis {
@@ -14,7 +11,6 @@ namespace {
 
 using invented::document;
 using invented::run;
-using nlohmann::json;
 
 std::string winner(const Cell& cell) {
   return cell.first() ? cell.first()->point.id() : "none: " + cell.empty_because;

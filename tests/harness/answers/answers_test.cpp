@@ -2,8 +2,6 @@
 // motion, the readings against exact motion, and solvers against all of them.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "harness/answers/answer.h"

@@ -3,9 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
-#include <filesystem>
 #include <fstream>
 #include <thread>
 
@@ -23,17 +21,6 @@ class Files : public testing::Test {
 
   TemporaryFolder folder_{"files-test"};
 };
-
-TEST_F(Files, FilesBesideTheOutputStay) {
-  const std::string names[] = {at("a.json.partial"), at("a.json.XXXXXX"), at("a.json.tmp")};
-  for (const std::string& name : names) std::ofstream(name) << "mine";
-  check_writable(at("a.json"));
-  for (const char* text : {"one", "two"}) {
-    write_atomically(at("a.json"), text);
-    EXPECT_EQ(content(at("a.json")), text);
-  }
-  for (const std::string& name : names) EXPECT_EQ(content(name), "mine") << name;
-}
 
 // A link to a file that does not exist yet does too; both names of an output share one lock.
 TEST_F(Files, ALinkStaysALink) {

@@ -3,11 +3,9 @@
 #include <gtest/gtest.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <array>
 #include <chrono>
-#include <csignal>
 #include <cstdlib>
 #include <thread>
 
@@ -19,7 +17,6 @@ namespace harness {
 namespace {
 
 using End = ChildOutcome::End;
-using nlohmann::json;
 
 void sleep_for(int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); }
 

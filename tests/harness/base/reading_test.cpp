@@ -9,12 +9,8 @@ namespace harness {
 namespace {
 
 TEST(JsonText, InvalidUtf8LosesNoDocument) {
-  const nlohmann::json value = {{"path",
-                                 "a\xff"
-                                 "b"}};
-  EXPECT_EQ(parse_document(document_text(value), "a.json").at("path"),
-            "a\xEF\xBF\xBD"
-            "b");
+  const json value = {{"path", "a\xffz"}};
+  EXPECT_EQ(parse_document(document_text(value), "a.json").at("path"), "a\uFFFDz");
 }
 
 TEST(JsonText, OfADocumentSaysTheSame) {

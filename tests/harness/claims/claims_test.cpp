@@ -1,8 +1,5 @@
 // Verdicts on the paper's claims follow from points by the stated rules: invented points in, known
 // verdicts out. Those on which method is fast: contests_test.cpp.
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 #include "support/invented_points.h"
 

@@ -1,7 +1,4 @@
 // Claims on which method is fast: verdicts only where intervals lie on one side.
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 #include "support/invented_points.h"
 

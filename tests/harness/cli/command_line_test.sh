@@ -7,7 +7,6 @@ makes() { bench "${@:2}" --out "$1" >"$1.txt" 2>"$1.err" || fail "$* -> exit $?:
 
 # ---- Bad input ----
 echo '{"sweeps": [{"sweep": "strain", "scene": "chain", "limits": [0.1], "scene_parameters": {"n": 7}}]}' >small.json
-echo 'not JSON' >words.json
 : >empty.json
 mkdir -p folder && ln -sf nowhere.json dangling.json
 refused "nothing to do"
@@ -20,26 +19,22 @@ while read -r line; do
 done <<'TABLE'
 did you mean 'strain' <- --sweep strian --out out.json
 no point is left <- SWEEP --filter nothing
-no case matches <- --sweep stability --case nothing --out out.json
 no profile of hard cases <- --sweep stability --profile large --out out.json
 --filter goes with --sweep strain, resolution and step only (--case chooses <- --sweep stability --filter x --out out.json
 is '1', must be a number above 0 and below 1 <- SWEEP --limit 0.01,1
 --memory <- SWEEP --memory much
-is 'nan', must be a number above 0 <- SWEEP --timeout nan
 has one size <- SWEEP --n 10,20
 give --n <- --sweep resolution --profile pairs --scene patch --out out.json
 leaves no step <- SWEEP --finest 0.05
 '99999999999999999999', must be a whole number <- check --solver icd --seed 99999999999999999999
 cannot read the suite <- SUITE missing.json
 --finest-error needs references, missing: chain-n7 <- SUITE small.json --profile pairs --scene chain --finest-error 0.02
-there is no folder 'words.json' <- --sweep strain --profile pairs --out words.json/result.json
 there is no folder 'nowhere' <- film --out nowhere/x.png
 no option '--limt' <- SWEEP --limt 0.01
 unexpected argument 'two.json' of bench film (see bench film --help) <- film two.json
 no command 'foo' (see bench --help) <- help foo
 --solver is required (see bench check --help) <- check
 99 s is not within the film <- film --stills 99 --out x.png
-did you mean 'solvers' <- list solver
 cannot read the result file 'missing.json': No such file or directory <- claims missing.json
 cannot read the result file 'folder': it is a folder <- show folder
 'dangling.json': it is a link to 'nowhere.json', which does not exist <- show dangling.json
@@ -173,5 +168,23 @@ for half in 12 34; do makes "half$half.json" "${cases[@]}" "Q[$half]"; done
 for files in part.json "half12.json half34.json"; do
   diff <(bench show whole.json | tail -n +2) <(bench show $files | tail -n +2) || fail "$files: not the whole"
 done
+
+# ---- Terminal, page of results, report and figures agree, in the same words, on a committed result ----
+result=$root/results/paper-strain-chain.json
+bench show "$result" >terminal.txt || fail "show"
+bench show "$result" --json >analysis.json || fail "show --json"
+bench results "$result" >page.md || fail "results"
+for words in "report $result --out report.html" "plot $result --out figures"; do bench $words >/dev/null || fail "$words"; done
+holds '
+import html, re
+from pathlib import Path
+sentence = read("analysis.json")["findings"][0]["sentences"][0]
+assert "is the fastest" in sentence, sentence
+# The words of a picture stand in its comments, a line each.
+told = {str(path): " ".join(re.findall(r"<!-- (.*?) -->", path.read_text())) for path in Path("figures").glob("*.svg")}
+assert any("figure4a" in name for name in told) and any("plane" in name for name in told), sorted(told)
+told.update((name, html.unescape(Path(name).read_text())) for name in ("terminal.txt", "page.md", "report.html"))
+silent = [name for name, text in told.items() if sentence not in " ".join(text.split())]
+assert not silent, f"{silent} do not say: {sentence}"'
 
 finish

@@ -13,8 +13,6 @@ namespace {
 
 using Times = std::vector<double>;
 
-// ---- Mann-Whitney -------------------------------------------------------------------------------
-
 TEST(MannWhitney, AgreesWithIndependentPrograms) {
   const auto series = [](int from, int to, auto value) {
     Times times;
@@ -30,27 +28,19 @@ TEST(MannWhitney, AgreesWithIndependentPrograms) {
   };
   for (const Row& row : {
            // scipy 1.10.1: scipy.stats.mannwhitneyu(a, b, alternative="greater", method="exact")
-           Row{{1.1, 1.2, 1.3, 1.4}, {1.0, 1.05, 0.9, 0.95}, 0.014285714285714285, 1e-15},
            Row{{0.8, 0.83, 1.89, 1.04, 1.45, 1.38, 1.91, 1.64, 0.73, 1.46},
                {1.15, 0.88, 0.9, 0.74, 1.21},
                0.1272061272061272,
                1e-15},
-           Row{{19, 22, 16, 29, 24}, {20, 11, 17, 12}, 0.05555555555555555, 1e-15},
            // ties: all choices of ranks counted one by one (scipy.stats.rankdata and
            // itertools.combinations)
            Row{tied_a, tied_b, 0.9120435120435121, 1e-15},
            Row{tied_b, tied_a, 0.10240870240870241, 1e-15},
-           Row{{9, 7, 5, 10, 6, 8}, {3, 4, 2, 6, 2, 5}, 0.005411255411255411, 1e-15},
            // many: method="asymptotic", which corrects for ties and continuity
            Row{many_a, many_b, 0.6717825771992799, 1e-9},
-           Row{many_b, many_a, 0.33140674930257097, 1e-9},
-           Row{series(0, 40, [](int i) { return i * 1.01 + 5; }),
-               series(0, 40, [](int i) { return i + 0.003; }), 0.025104467306861344, 1e-9},
        })
     EXPECT_NEAR(mann_whitney_greater(row.a, row.b), row.p, row.accuracy);
 }
-
-// ---- Times --------------------------------------------------------------------------------------
 
 Times spread(double middle, int n, double width = 0.01) {
   Times times;
@@ -84,8 +74,6 @@ TEST(CompareTimes, FlagsOnlyWhatTestAndBothRatiosAgreeOn) {
     EXPECT_EQ(times.too_few, before.size() == 3);
   }
 }
-
-// ---- Points and results -------------------------------------------------------------------------
 
 ComparedPoint point_with(const std::string& id, double iterations = 100) {
   ComparedPoint point;
@@ -196,25 +184,13 @@ TEST(Compare, PairsPointsOfOneNameInTheirOrder) {
   EXPECT_EQ(compare(both, both, Gate()).count(Change::same), 2u);
 }
 
-// ---- Files --------------------------------------------------------------------------------------
-
-TEST(Gate, RefusesWhatItDoesNotKnow) {
-  const auto message = [](const std::string& text) {
-    return refusal_of([&text] { parse_gate(text, "g.json"); });
-  };
-  EXPECT_EQ(message("{}"), "");
-  for (const auto& [text, part] : std::vector<std::pair<std::string, std::string>>{
-           {"{", "'g.json' is not JSON"},
-           {R"({"time": {}})", "at its top: unknown key 'time'"},
-           {R"({"times": {"count": 1}})", "at [times][count], 1: "},
-           {R"({"times": {"significance": 0.6}})", "equal to 0.5"},
-           {R"({"times": {"minimum_ratio": 0.9}})", "[minimum_ratio], 0.9: "},
-           {R"({"counters": {"rule": "exakt"}})", "[rule], \"exakt\": "},
-           {R"({"counters": {"names": ["iteration"]}})", "[names][0], \"iteration\": "},
-           {R"({"errors": {"maxstrain": 2}})", "at [errors]: unknown key 'maxstrain'"}}) {
-    const std::string said = message(text);
+TEST(Gate, IsReadAndRefusedByName) {
+  for (const auto& [text, part] :
+       {std::pair("{", "'g.json' is not JSON"),
+        {R"({"counters": {"names": ["iteration"]}})", "[names][0], \"iteration\": "},
+        {R"({"errors": {"maxstrain": 2}})", "at [errors]: unknown key 'maxstrain'"}}) {
+    const std::string said = refusal_of([&text = text] { parse_gate(text, "g.json"); });
     EXPECT_NE(said.find(part), std::string::npos) << text << " -> " << said;
-    EXPECT_NE(said.find("g.json"), std::string::npos) << said;
   }
   const Gate gate = parse_gate(
       R"({"times": {"count": false}, "counters": {"rule": "rise", "names": ["steps"]}, "errors": {}})",
@@ -223,8 +199,6 @@ TEST(Gate, RefusesWhatItDoesNotKnow) {
   EXPECT_EQ(gate.counter_rule, CounterRule::rise);
   EXPECT_TRUE(gate.errors.empty());
 }
-
-// ---- Reports ------------------------------------------------------------------------------------
 
 TEST(Reports, JUnitEscapes) {
   const Comparison comparison{

@@ -3,13 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <fstream>
 
-#include "harness/base/errors.h"
 #include "harness/points/result_file.h"
-#include "harness/points/suite.h"
 #include "harness/points/tuned.h"
 #include "harness/run/sweep.h"
 #include "support/invented_runs.h"
@@ -17,8 +13,6 @@
 
 namespace harness {
 namespace {
-
-using nlohmann::json;
 
 std::string write_tuned(const std::vector<TunedEntry>& entries) {
   const std::string path = ::testing::TempDir() + "tuned_of_test.json";
@@ -115,23 +109,17 @@ TEST(Suite, NamesFileKeyAndValueOfWhatIsWrong) {
       {"[]", "'suite.json' is not a suite file: at its top"},
       {suite_text(R"("name": "../x", )", R"("limit": 0.1)"), "'name' is"},
       {suite_text(R"("reps": 0, )", R"("limit": 0.1)"), "at [reps], 0: "},
-      {suite_text(R"("reps": 1e300, )", R"("limit": 0.1)"), "at [reps], 1e+300: "},
-      {sweep(R"("limits": [0])"), "[limits][0], 0: "},
-      {sweep(R"("limits": "all")"), "[limits], \"all\": "},
       {suite_text("", R"("limit": 0.1)", "drap"), "did you mean 'drape'"},
       {sweep(R"("limit": 0.1, "solver": ["icd"])"), "unknown key 'solver'; did you mean 'solvers'"},
       {sweep(R"("limit": 0.1, "scene_parameters": {"n": 1})"), "'n' is 1"},
       {sweep(R"("limit": 0.1, "scene_parameters": {"m": 1})"), "no parameter of scene chain 'm'"},
       {sweep(R"("limit": 0.1, "scene_parameters": {"duration": 1e9})"), "'duration'"},
-      {sweep(R"("limit": 0.1, "resolutions": [2.5])"), "[resolutions][0], 2.5: "},
       {sweep(R"("limit": 0.1, "solver_options": {"icd": {"max_iteration": 3}})"),
        "did you mean 'max_iterations'"},
       {solvers(R"("jacobi", "jacobi")"), "'jacobi' is listed twice"},
       {solvers(R"({"name": "icd", "solver": "jacobi"})"), "another solver"},
       {solvers(R"({"name": "my solver", "solver": "icd"})"), "a-z, 0-9 and _"},
       {solvers(R"({"name": "x", "solver": "idc"})"), "did you mean 'icd'"},
-      {solvers(R"({"name": "x", "solver": "icd", "unranked": 1})"), "[unranked], 1: "},
-      {solvers("5"), "[solvers][0], 5: "},
       {suite_text(R"("same": "idc", )", R"("limit": 0.1, "solvers": ["icd"])"),
        "did you mean 'icd'"},
       {suite_text(R"("tuned": "no_such.json", )", R"("limit": 0.1)"), "no_such.json"}};

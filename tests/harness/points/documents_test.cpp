@@ -14,8 +14,6 @@
 namespace harness {
 namespace {
 
-using nlohmann::json;
-
 // Whatever a user's file holds: a suite, a result, or UsageError with one line; nothing else gets
 // out.
 std::string read_as_suite(const std::string& text) {
@@ -115,7 +113,7 @@ void corrupt_and_read(const std::string& text, std::string (*read)(const std::st
 
 TEST(Documents, CorruptedSuitesAreReadOrRefusedInALine) {
   for (auto name : {"quick.json", "default.json", "pairs.json", "paper.json", "large.json"}) {
-    const std::string text = read_file(std::string(SOURCE_DIR) + "/configs/" + name, "suite");
+    const std::string text = read_file(source_path(std::string("configs/") + name), "suite");
     ASSERT_EQ(read_as_suite(text), "") << name;
     corrupt_and_read(text, read_as_suite, inextensible::testing::trials(200));
   }
@@ -123,7 +121,7 @@ TEST(Documents, CorruptedSuitesAreReadOrRefusedInALine) {
 
 TEST(Documents, CorruptedResultsAreReadOrRefusedInALine) {
   std::vector<PointResult> points;
-  const auto suite = read_suite(std::string(SOURCE_DIR) + "/configs/pairs.json");
+  const auto suite = read_suite(source_path("configs/pairs.json"));
   for (const Search& search : plan(suite, {})) {
     points.emplace_back(search.base, PointStatus::ok).samples = {0.5};
     points.back().best = true;

@@ -4,14 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <random>
-#include <tuple>
 
 namespace harness {
 namespace {
-
-using nlohmann::json;
 
 class Random {
  public:

@@ -3,9 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <map>
-
 #include "harness/run/fake_machine.h"
 
 namespace harness {
@@ -39,23 +36,22 @@ TEST(Choose, PicksTheFastestWithinTheError) {
 TEST(Choose, FramesKeepTheBudgetNotTheirMean) {
   std::vector<PointResult> all = measured_runs;  // frames of "b": 3 / 60 s, 99 % below 6 / 60 s
   all[1].frame_times = {{60, 2.0 / 60, 9.0 / 60, 9.0 / 60}};
-  const auto with = [&all](double budget) { return recommend(all, {.budget = budget}); };
-  EXPECT_EQ(with(0).best->point, &all[1]) << "without a budget the fastest";
-  EXPECT_TRUE(with(0).all_is_well());
-
-  EXPECT_EQ(with(6.5 / 60).best->point, &all[2]) << "the fastest of those that keep it";
-  EXPECT_TRUE(with(6.5 / 60).all_is_well());
-  EXPECT_EQ(with(6.5 / 60).next->point, &all[1]);
-
-  const Recommendation tight = with(2.5 / 60);
-  EXPECT_EQ(tight.best->point, &all[1]);
-  EXPECT_EQ(tight.budget, Kept::half);
-  EXPECT_TRUE(tight.to_be_taken() && !tight.all_is_well());
-
-  const Recommendation impossible = with(1.5 / 60);
-  EXPECT_EQ(impossible.best->point, &all[1]) << "the fastest is told";
-  EXPECT_EQ(impossible.budget, Kept::fewer);
-  EXPECT_FALSE(impossible.to_be_taken()) << "a median above the budget is nothing to take";
+  const struct {
+    double budget;     // in 1/60 s
+    std::size_t best;  // the fastest, or the fastest of those that keep it
+    Kept kept;
+  } rows[] = {{0, 1, Kept::nearly_all},
+              {6.5, 2, Kept::nearly_all},
+              {2.5, 1, Kept::half},
+              {1.5, 1, Kept::fewer}};
+  for (const auto& row : rows) {
+    const Recommendation found = recommend(all, {.budget = row.budget / 60});
+    EXPECT_EQ(found.best->point, &all[row.best]) << row.budget;
+    EXPECT_EQ(found.budget, row.kept) << row.budget;
+    EXPECT_EQ(found.all_is_well(), row.kept == Kept::nearly_all) << row.budget;
+    EXPECT_EQ(found.to_be_taken(), row.kept != Kept::fewer) << "median above " << row.budget;
+    if (row.best == 2) EXPECT_EQ(found.next->point, &all[1]);
+  }
   EXPECT_FALSE(recommend(all, {.error = 0.001}).to_be_taken());
 }
 

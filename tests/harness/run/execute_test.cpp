@@ -4,15 +4,11 @@
 #include <gtest/gtest.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
-#include <chrono>
-#include <csignal>
 #include <fstream>
 #include <thread>
 
 #include "harness/base/child_process.h"
-#include "harness/points/point_json.h"
 #include "harness/run/fake_machine.h"
 #include "harness/stability/trial.h"
 
@@ -39,7 +35,7 @@ void sleep_for_ever() {
 }
 
 TEST(Isolation, ARunInAChildIsTheRunInTheParent) {
-  nlohmann::json both[2];
+  json both[2];
   for (const bool in_child : {false, true}) {
     const Runner run = in_child ? isolated(run_point, 0) : run_point;
     PointResult point = run(chain_of_ten(), {});

@@ -1,13 +1,7 @@
 // Small runs of real solvers, and a machine whose runs are formulas, without a clock.
 #pragma once
 
-#include <cmath>
-#include <functional>
-#include <string>
-#include <vector>
-
 #include "harness/run/sweep.h"
-#include "harness/scenes/scene.h"
 
 namespace harness {
 

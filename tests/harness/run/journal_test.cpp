@@ -5,14 +5,11 @@
 #include <random>
 
 #include "harness/base/files.h"
-#include "harness/points/point_json.h"
 #include "harness/points/result_file.h"
 #include "harness/run/fake_machine.h"
 
 namespace harness {
 namespace {
-
-using nlohmann::json;
 
 // Two scenes, two limits, three sizes: 60 searches of up to ten steps.
 Suite suite_of(const std::string& axis) {

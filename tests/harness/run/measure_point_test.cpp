@@ -3,9 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <vector>
-
-#include "harness/base/files.h"
 #include "harness/run/calibration.h"
 #include "harness/run/fake_machine.h"
 #include "harness/run/machine_noise.h"
@@ -213,7 +210,7 @@ TEST(NoiseProbe, SeesThatOthersTakeTheProcessor) {
   EXPECT_FALSE(noise_probe.noisy());
   shared = true;
   noise_probe.sample();
-  const nlohmann::json seen = noise_probe.to_json();
+  const json seen = noise_probe.to_json();
   EXPECT_EQ(seen.at("seconds").size(), 3u);
   EXPECT_EQ(seen.at("noisy"), true) << "spread " << noise_probe.spread();
 }

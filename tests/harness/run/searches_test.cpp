@@ -1,11 +1,7 @@
 // The searches for a step on a disturbed machine with known times, and for a stiffness by formulas.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
 #include <random>
-#include <vector>
 
 #include "harness/base/statistics.h"
 #include "harness/run/calibration.h"

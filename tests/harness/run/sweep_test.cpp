@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "harness/run/fake_machine.h"
 
 namespace harness {
@@ -115,23 +113,6 @@ TEST(StepSearch, SamplesWhatMayBeBest) {
       const bool sampled = point.best || kind == "step";
       EXPECT_EQ(point.samples.size(), !point.ok() ? 0u : sampled ? 3u : 1u) << point.spec.id();
     }
-  }
-}
-
-// By first samples 1/200 s is best, by all of them 1/400 s.
-TEST(StepSearch, TheBestStepIsChosenByAllSamplesOfThoseThatAreClose) {
-  Suite suite = suite_of_chain({0.01});
-  suite.reps = 5;
-  FakeMachine machine{[](const PointSpec& spec) {
-    return has_step(spec, 400) ? 0.115 : has_step(spec, 100) ? 0.2 : parabola(200)(spec);
-  }};
-  machine.again = [](const PointResult& point) {
-    return has_step(point.spec, 400) ? 0.09 : has_step(point.spec, 200) ? 0.11 : 0.01;
-  };
-  for (const PointResult& point : sweep(suite, machine).points) {
-    EXPECT_EQ(point.best, has_step(point.spec, 400)) << point.spec.id();
-    const bool close = has_step(point.spec, 400) || has_step(point.spec, 200);
-    EXPECT_EQ(point.samples.size(), close ? 5u : 1u) << point.spec.id();
   }
 }
 

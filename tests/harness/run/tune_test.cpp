@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <fstream>
 #include <random>
 #include <set>
@@ -201,7 +199,7 @@ TEST(Tune, AnEntryIsRefusedOnceItsRuleHasChanged) {
   const TunedEntry entry = tuned(machine, {.budget = 10});
   const struct {
     const char* place;
-    nlohmann::json was;
+    json was;
     std::string change;
   } rows[] = {
       {"/scene", "chain", ""},
@@ -211,7 +209,7 @@ TEST(Tune, AnEntryIsRefusedOnceItsRuleHasChanged) {
   for (const auto& row : rows) {
     TunedEntry other = entry;
     other.context = {{"date", ""}, {"cpu_model", ""}, {"commit", ""}};
-    other.rule[nlohmann::json::json_pointer(row.place)] = row.was;
+    other.rule[json::json_pointer(row.place)] = row.was;
     EXPECT_EQ(rule_change(other), row.change);
     const std::string file = ::testing::TempDir() + "/tuned.json";
     std::ofstream(file) << tuned_document({other});
