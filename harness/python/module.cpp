@@ -2,9 +2,6 @@
 #include <pybind11/stl.h>
 
 #include <memory>
-#include <optional>
-#include <stdexcept>
-#include <string>
 
 #include "harness/base/errors.h"
 #include "harness/base/text.h"

@@ -14,7 +14,6 @@
 #include <cmath>
 #include <limits>
 
-#include "solvers/linear/spd_solver.h"
 #include "solvers/methods/rows.h"
 #include "solvers/problem/forces.h"
 #include "solvers/problem/stopwatch.h"

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <initializer_list>
 #include <tuple>
-#include <utility>
 
 #include "harness/claims/claims.h"
 #include "support/invented_runs.h"

@@ -3,10 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <vector>
-
-#include "harness/scenes/scene.h"
-
 namespace harness {
 namespace {
 

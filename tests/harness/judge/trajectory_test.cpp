@@ -1,8 +1,6 @@
 // Scenes that leave the program as files and motions that come into it: nothing is lost on the way.
 #include "harness/judge/trajectory.h"
 
-#include <gtest/gtest.h>
-
 #include <fstream>
 #include <random>
 
@@ -11,7 +9,6 @@
 #include "harness/judge/drive.h"
 #include "harness/run/measure_point.h"
 #include "harness/scenes/scene_folder.h"
-#include "solvers/registry.h"
 #include "support/refusal.h"
 
 namespace harness {

@@ -1,6 +1,5 @@
 // Cloth from files: the square of the built-in scenes, read back, must be that square, however its
 // faces are cut; and what can be no cloth is refused in one line.
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>

@@ -13,7 +13,6 @@
 #include "harness/judge/drive.h"
 #include "harness/judge/mechanics.h"
 #include "solvers/problem/triangle_collider.h"
-#include "solvers/registry.h"
 #include "solvers/systems/schur_complement.h"
 
 namespace harness {

@@ -1,13 +1,11 @@
 // What every linear solver of the list promises, on every matrix that it takes, against dense
 // algebra; and what some of them promise beyond that.
-#include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <limits>
 #include <unsupported/Eigen/KroneckerProduct>
 
 #include "solvers/linear/multifrontal_cholesky.h"
-#include "solvers/linear/spd_solver.h"
 #include "support/random_mesh.h"
 
 namespace inextensible {

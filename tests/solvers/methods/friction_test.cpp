@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "solvers/problem/triangle_collider.h"
-#include "solvers/registry.h"
 #include "support/contact.h"
 #include "support/motion.h"
 #include "support/param_name.h"

@@ -3,9 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <functional>
-#include <memory>
 #include <vector>
 
 #include "support/contact.h"
