@@ -2,8 +2,6 @@
 // is its own file and one line in registry.cpp, or a plug-in (inextensible.h).
 #pragma once
 
-#include <string_view>
-
 #include "solvers/methods/backend.h"
 
 namespace inextensible {

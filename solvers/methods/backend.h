@@ -4,14 +4,9 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <map>
-#include <optional>
-#include <span>
 #include <string>
-#include <variant>
-#include <vector>
 
 #include "solvers/stepping/velocity_filter.h"
 

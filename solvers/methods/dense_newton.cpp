@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include "solvers/methods/rows.h"
-#include "solvers/stepping/velocity_filter.h"
 #include "solvers/systems/constraint_system.h"
 
 namespace inextensible {

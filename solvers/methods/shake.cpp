@@ -16,9 +16,7 @@
 
 #include "solvers/methods/rows.h"
 #include "solvers/problem/forces.h"
-#include "solvers/problem/stopwatch.h"
 #include "solvers/systems/constraint_system.h"
-#include "solvers/systems/implicit_forces.h"
 
 namespace inextensible {
 namespace {

@@ -5,7 +5,6 @@
 #include <cstdint>
 
 #include "solvers/methods/colored_edges.h"
-#include "solvers/problem/contacts.h"
 #include "solvers/systems/constraint_system.h"
 
 namespace inextensible {

@@ -4,7 +4,6 @@
 #pragma once
 
 #include "solvers/problem/contacts.h"
-#include "solvers/problem/problem.h"
 
 namespace inextensible {
 

@@ -1,10 +1,7 @@
 // The yarns of woven cloth, each projected as a whole.
 #pragma once
 
-#include <span>
-
 #include "solvers/methods/strain_passes.h"
-#include "solvers/problem/work_counters.h"
 
 namespace inextensible {
 

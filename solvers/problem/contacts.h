@@ -20,7 +20,6 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
-#include <vector>
 
 #include "solvers/problem/obstacle.h"
 #include "solvers/problem/stopwatch.h"

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "solvers/problem/problem.h"
-#include "solvers/problem/work_counters.h"
 
 namespace inextensible {
 

@@ -23,7 +23,6 @@
 
 #include "solvers/linear/spd_solver.h"
 #include "solvers/problem/problem.h"
-#include "solvers/problem/work_counters.h"
 
 namespace inextensible {
 

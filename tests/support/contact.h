@@ -1,8 +1,6 @@
 // Obstacles and what stands on them, for tests of contact.
 #pragma once
 
-#include <memory>
-
 #include "solvers/problem/contacts.h"
 
 namespace inextensible::testing {

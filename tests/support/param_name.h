@@ -1,8 +1,6 @@
 // Contestants as GoogleTest's parameters, whose names take letters, digits and _ only.
 #pragma once
 
-#include <vector>
-
 #include "solvers/registry.h"
 
 namespace inextensible::names {

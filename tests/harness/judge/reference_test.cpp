@@ -8,7 +8,6 @@
 #include <random>
 
 #include "harness/base/errors.h"
-#include "harness/base/files.h"
 #include "harness/base/interrupt.h"
 #include "harness/judge/reference_routes.h"
 #include "harness/scenes/pendulum.h"

@@ -9,7 +9,6 @@
 
 #include "harness/stability/trial.h"
 #include "solvers/problem/triangle_collider.h"
-#include "solvers/systems/constrained_acceleration.h"
 #include "solvers/systems/constraint_system.h"
 #include "support/motion.h"
 #include "support/param_name.h"

@@ -1,14 +1,10 @@
 // Fast projection and ICD: the theorems of the paper. Yarns are found whatever the mesh; a yarn's
 // projection is fast projection's on a chain. Where methods fail is asked by the hard cases.
-#include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <map>
-#include <set>
 
 #include "solvers/methods/yarn_pass.h"
-#include "solvers/problem/edge_constraints.h"
 #include "solvers/registry.h"
 #include "support/motion.h"
 

@@ -2,7 +2,6 @@
 #include "solvers/problem/bending.h"
 
 #include <Eigen/Geometry>
-#include <functional>
 #include <numbers>
 
 #include "solvers/problem/forces.h"
