@@ -2,6 +2,11 @@
 // is its own file and one line in registry.cpp, or a plug-in (inextensible.h).
 #pragma once
 
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
 #include "solvers/methods/backend.h"
 
 namespace inextensible {

@@ -4,9 +4,15 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <map>
+#include <memory>
+#include <optional>
+#include <span>
 #include <string>
+#include <variant>
+#include <vector>
 
 #include "solvers/stepping/velocity_filter.h"
 

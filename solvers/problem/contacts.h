@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "solvers/problem/obstacle.h"
 #include "solvers/problem/stopwatch.h"

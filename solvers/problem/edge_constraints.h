@@ -5,6 +5,9 @@
 // stored, only u (3 x m).
 #pragma once
 
+#include <Eigen/Core>
+#include <vector>
+
 #include "solvers/problem/problem.h"
 
 namespace inextensible {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "solvers/problem/problem.h"
+#include "solvers/problem/work_counters.h"
 
 namespace inextensible {
 

@@ -6,8 +6,10 @@
 // collider are optional parts, and a part that is absent costs nothing.
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "solvers/problem/bending.h"
 #include "solvers/problem/collider.h"

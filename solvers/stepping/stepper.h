@@ -6,8 +6,11 @@
 // method that treats stretching inside its time stepper derives from Stepper directly.
 #pragma once
 
+#include <memory>
+
 #include "solvers/problem/contacts.h"
 #include "solvers/problem/step_result.h"
+#include "solvers/problem/work_counters.h"
 
 namespace inextensible {
 

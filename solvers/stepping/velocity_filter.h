@@ -1,6 +1,9 @@
 // A constraint method as a filter of velocities, and the stepper that such a filter makes.
 #pragma once
 
+#include <memory>
+
+#include "solvers/problem/contacts.h"
 #include "solvers/stepping/stepper.h"
 #include "solvers/systems/implicit_forces.h"
 

@@ -21,8 +21,12 @@
 // theta = 1 / (1 + rho) the spectral radius at infinite stiffness is rho.
 #pragma once
 
+#include <memory>
+#include <vector>
+
 #include "solvers/linear/spd_solver.h"
 #include "solvers/problem/problem.h"
+#include "solvers/problem/work_counters.h"
 
 namespace inextensible {
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <initializer_list>
 #include <tuple>
+#include <utility>
 
 #include "harness/claims/claims.h"
 #include "support/invented_runs.h"

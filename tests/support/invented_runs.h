@@ -1,6 +1,9 @@
 // Result documents whose times are made up, for tests of what is concluded from them.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "harness/points/point_json.h"
 
 namespace harness::invented {
