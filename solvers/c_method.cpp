@@ -6,7 +6,6 @@
 #include <type_traits>
 
 #include "solvers/problem/forces.h"
-#include "solvers/problem/stopwatch.h"
 #include "solvers/problem/triangle_collider.h"
 
 namespace inextensible {

@@ -3,7 +3,6 @@
 // made.
 #include <stdexcept>
 
-#include "solvers/linear/spd_solver.h"
 #include "solvers/methods/backend.h"
 
 namespace inextensible {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <set>
 #include <stdexcept>
-#include <string>
 
 // All methods, in the order of tables; each has its row in its own file in solvers/methods.
 #define INEXTENSIBLE_METHODS(ROW) \

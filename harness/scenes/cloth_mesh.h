@@ -2,11 +2,7 @@
 // weft, and a fabric's forces in physical units.
 #pragma once
 
-#include <Eigen/Core>
-#include <array>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "harness/scenes/mesh_file.h"
 #include "harness/scenes/meshes.h"

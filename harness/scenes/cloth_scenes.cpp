@@ -1,12 +1,8 @@
 // Scenes of a square of cloth, and of a disc.
 #include <cmath>
-#include <numbers>
-#include <stdexcept>
-#include <string>
 
 #include "harness/scenes/cloth_mesh.h"
 #include "harness/scenes/fabrics.h"
-#include "harness/scenes/meshes.h"
 #include "solvers/problem/triangle_collider.h"
 
 namespace harness {

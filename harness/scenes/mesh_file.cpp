@@ -2,12 +2,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <map>
 #include <set>
-#include <sstream>
-#include <string_view>
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"

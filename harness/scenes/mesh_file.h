@@ -1,10 +1,8 @@
 // Meshes in Wavefront's OBJ format, as their exporters mean them.
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <string>
-#include <vector>
 
 #include "solvers/problem/problem.h"
 

@@ -8,8 +8,6 @@
 // positive definite tridiagonal system (GSL), so that accelerations cost O(N).
 #pragma once
 
-#include <vector>
-
 #include "solvers/problem/problem.h"
 
 namespace harness {

@@ -1,12 +1,10 @@
 // Cloth that a moving body wears: a skirt held by nothing but the body's shape, and a cape pinned
 // to it.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
-#include <string>
 
 #include "harness/scenes/cloth_mesh.h"
 #include "solvers/problem/triangle_collider.h"

@@ -1,7 +1,6 @@
 // CHOLMOD's supernodal Cholesky (Chen et al. 2008) on a matrix in elimination order.
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <numeric>
 
 #include "solvers/linear/cholmod_symbolic.h"

@@ -1,6 +1,5 @@
 #include <umfpack.h>
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>

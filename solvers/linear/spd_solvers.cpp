@@ -1,6 +1,5 @@
 // The list of SPD solvers. inextensible::core has a shorter one (core.cpp).
 #include "solvers/linear/multifrontal_cholesky.h"
-#include "solvers/linear/spd_solver.h"
 
 namespace inextensible {
 

@@ -9,7 +9,6 @@
 // its coupling to the next row. With A = L D L^T and Z = D^-1 L^-1 B the next row loses B^T A^-1 B
 // = Z^T D Z. Blocks are spelled out as numbers: as arrays they take three times as long (measured).
 #include <algorithm>
-#include <memory>
 #include <stdexcept>
 
 #include "solvers/linear/spd_solver.h"

@@ -3,10 +3,8 @@
 // consecutive too wherever the mesh is as regular as woven cloth, and are gathered elsewhere.
 #pragma once
 
-#include <Eigen/Core>
 #include <set>
 #include <span>
-#include <vector>
 
 #include "solvers/problem/problem.h"
 

@@ -6,10 +6,8 @@
 // null: the unconstrained step alone, which measures what the scene and the harness cost.
 #include <Eigen/Dense>
 #include <stdexcept>
-#include <string>
 
 #include "solvers/methods/rows.h"
-#include "solvers/stepping/velocity_filter.h"
 #include "solvers/systems/constraint_system.h"
 
 namespace inextensible {

@@ -17,12 +17,10 @@
 // forcing term of an inexact Newton method: first_forcing, then as |C| has fallen, squared
 // (Eisenstat and Walker 1996, choice 2), which keeps the convergence of order two.
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "solvers/methods/rows.h"
 #include "solvers/methods/strain_passes.h"
-#include "solvers/systems/constraint_system.h"
 
 namespace inextensible {
 namespace {

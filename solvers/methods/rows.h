@@ -4,7 +4,6 @@
 #include <type_traits>
 #include <utility>
 
-#include "solvers/linear/spd_solver.h"
 #include "solvers/methods/backend.h"
 
 namespace inextensible {

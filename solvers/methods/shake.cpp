@@ -14,12 +14,9 @@
 #include <cmath>
 #include <limits>
 
-#include "solvers/linear/spd_solver.h"
 #include "solvers/methods/rows.h"
 #include "solvers/problem/forces.h"
-#include "solvers/problem/stopwatch.h"
 #include "solvers/systems/constraint_system.h"
-#include "solvers/systems/implicit_forces.h"
 
 namespace inextensible {
 namespace {

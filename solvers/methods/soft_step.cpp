@@ -16,8 +16,6 @@
 
 #include "solvers/methods/rows.h"
 #include "solvers/problem/edge_constraints.h"
-#include "solvers/problem/stopwatch.h"
-#include "solvers/systems/implicit_forces.h"
 
 namespace inextensible {
 namespace {

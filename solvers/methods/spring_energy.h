@@ -10,7 +10,6 @@
 #pragma once
 
 #include <array>
-#include <vector>
 
 #include "solvers/problem/contacts.h"
 #include "solvers/systems/vertex_matrix.h"

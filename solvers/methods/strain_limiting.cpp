@@ -2,7 +2,6 @@
 //
 // Edges within the limit are left alone (Provot 1995); others are brought to the target strain
 // along themselves. Both ends move, shared by inverse mass, so that momentum is kept.
-#include <cmath>
 #include <numeric>
 
 #include "solvers/methods/rows.h"

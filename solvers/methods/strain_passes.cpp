@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <experimental/simd>
 #include <map>
 #ifdef __SSE__

@@ -2,12 +2,9 @@
 // and the projections with passes: in single precision, on displacements from a base in double.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
-#include <vector>
 
 #include "solvers/methods/colored_edges.h"
-#include "solvers/problem/contacts.h"
 #include "solvers/systems/constraint_system.h"
 
 namespace inextensible {

@@ -1,8 +1,6 @@
-#include <string_view>
 
 #include "solvers/methods/backend.h"
 #include "solvers/problem/forces.h"
-#include "solvers/problem/stopwatch.h"
 #include "solvers/stepping/bdf2.h"
 
 namespace inextensible {

@@ -3,11 +3,7 @@
 // form share. Vertices of a color, visited side by side, share no spring or bending stencil.
 #pragma once
 
-#include <Eigen/Core>
-#include <vector>
-
 #include "solvers/problem/contacts.h"
-#include "solvers/problem/problem.h"
 
 namespace inextensible {
 

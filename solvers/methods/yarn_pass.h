@@ -1,12 +1,7 @@
 // The yarns of woven cloth, each projected as a whole.
 #pragma once
 
-#include <cstdint>
-#include <span>
-#include <vector>
-
 #include "solvers/methods/strain_passes.h"
-#include "solvers/problem/work_counters.h"
 
 namespace inextensible {
 

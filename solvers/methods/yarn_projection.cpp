@@ -16,12 +16,9 @@
 // Loops: three passes over links a yarn, one pass over edges; one assembly, one factorization and
 // one solve a projection of the whole.
 #include <algorithm>
-#include <memory>
 
 #include "solvers/methods/rows.h"
-#include "solvers/methods/strain_passes.h"
 #include "solvers/methods/yarn_pass.h"
-#include "solvers/systems/constraint_system.h"
 
 namespace inextensible {
 namespace {

@@ -1,6 +1,5 @@
 #include "solvers/problem/contacts.h"
 
-#include <cmath>
 #include <limits>
 
 namespace inextensible {

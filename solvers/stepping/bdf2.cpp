@@ -1,7 +1,6 @@
 #include "solvers/stepping/bdf2.h"
 
 #include "solvers/problem/forces.h"
-#include "solvers/problem/stopwatch.h"
 
 namespace inextensible {
 

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "solvers/problem/stopwatch.h"
-
 namespace inextensible {
 
 Stepper::Stepper(std::shared_ptr<const Problem> problem, bool own_contacts)

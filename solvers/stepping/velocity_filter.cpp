@@ -1,7 +1,5 @@
 #include "solvers/stepping/velocity_filter.h"
 
-#include "solvers/problem/stopwatch.h"
-
 namespace inextensible {
 
 // Limit on rounds. Of a convex obstacle every vertex is found once at most.

@@ -1,12 +1,9 @@
 // A problem's edges in elimination order and the solver for their J W J^T: what projections share.
 #pragma once
 
-#include <memory>
 #include <string>
-#include <string_view>
 
 #include "solvers/linear/spd_solver.h"
-#include "solvers/problem/edge_constraints.h"
 #include "solvers/problem/step_result.h"
 #include "solvers/systems/schur_complement.h"
 

@@ -5,7 +5,6 @@
 // are of order one.
 #pragma once
 
-#include <memory>
 #include <string_view>
 
 #include "solvers/problem/contacts.h"

@@ -12,10 +12,8 @@
 // factorization a Newton iteration; one solve and four passes over edges an iteration here.
 #include <cmath>
 
-#include "solvers/linear/spd_solver.h"
 #include "solvers/systems/constraint_system.h"
 #include "solvers/systems/kkt_system.h"
-#include "solvers/systems/schur_complement.h"
 
 namespace inextensible {
 namespace {

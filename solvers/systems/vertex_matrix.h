@@ -1,10 +1,7 @@
 // A problem's free vertices, ordered for little fill in a matrix that couples them, and its solver.
 #pragma once
 
-#include <memory>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "solvers/linear/spd_solver.h"
 #include "solvers/problem/problem.h"

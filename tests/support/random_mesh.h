@@ -160,9 +160,10 @@ inline Eigen::MatrixXd dense_gradient(const Problem& problem, const Positions& x
   return jacobian;
 }
 
-inline Eigen::VectorXd inverse_masses3(const Problem& problem) {
+// W J^T at x (3n x m), dense; J(y) times it is J W J^T, or SHAKE's matrix.
+inline Eigen::MatrixXd dense_moves(const Problem& problem, const Positions& x) {
   const auto w = Eigen::RowVectorXd::Map(problem.inverse_mass().data(), problem.vertices());
-  return w.replicate(3, 1).reshaped();
+  return w.replicate(3, 1).reshaped().asDiagonal() * dense_gradient(problem, x).transpose();
 }
 
 }  // namespace inextensible::testing

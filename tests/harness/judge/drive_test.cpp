@@ -1,11 +1,9 @@
-// How drives end, and what their observers see, with a stepper that refuses long steps.
+// How drives end, and what their observers see, with steppers whose refusals are known.
 #include "harness/judge/drive.h"
 
 #include <gtest/gtest.h>
 
-#include <vector>
-
-#include "harness/scenes/scene.h"
+#include <cmath>
 
 namespace harness {
 namespace {
@@ -15,26 +13,29 @@ using End = DriveState::End;
 
 constexpr double whole_step = 0.01;
 
-class Picky : public inextensible::Stepper {
+// Stands still, and refuses what `accepts` does not like.
+class Picky final : public inextensible::Stepper {
  public:
-  Picky(const Scene& scene, double longest, double until = 1e9)
-      : Stepper(scene.problem), longest_(longest), until_(until) {}
-
- protected:
-  inextensible::StepResult solve(const State& state, double step,
-                                 inextensible::Positions& x) override {
-    if (step > longest_ || state.time > until_) return {inextensible::Status::not_converged};
-    x = state.x;
-    return {};
-  }
+  using Accepts = std::function<bool(double time, double h)>;
+  Picky(const Scene& scene, Accepts accepts)
+      : Stepper(scene.problem), accepts_(std::move(accepts)) {}
 
  private:
-  double longest_, until_;  // s
+  inextensible::StepResult solve(const State& state, double step,
+                                 inextensible::Positions& x) override {
+    x = state.x;
+    if (accepts_(state.time, step)) return {};
+    return {inextensible::Status::not_converged, 7, -1, 0, "not to my taste"};
+  }
+  Accepts accepts_;
 };
 
 struct Driving {
+  explicit Driving(Picky::Accepts accepts = [](double, double) { return true; })
+      : stepper(scene, std::move(accepts)) {}
   Scene scene = built_scene("chain", {{"n", 3}});
   State state = scene.start;
+  Picky stepper;
 };
 
 TEST(Drive, TakesTheStepsOfItsPaceInBlocks) {
@@ -48,8 +49,7 @@ TEST(Drive, TakesTheStepsOfItsPaceInBlocks) {
     bool after(const State& /*state*/, const DriveState& /*driven*/) { return ++looks > 0; }
   } look;
   Driving d;
-  Picky stepper(d.scene, 1);
-  const DriveState driven = drive(stepper, d.state, {whole_step, 7}, look);
+  const DriveState driven = drive(d.stepper, d.state, {whole_step, 7}, look);
   EXPECT_EQ(driven.end, End::arrived);
   EXPECT_EQ(look.blocks, (std::vector<int>{3, 3, 1}));
   EXPECT_EQ(look.counted, (std::vector<long>{1, 2, 3, 4, 5, 6, 7}));
@@ -58,22 +58,22 @@ TEST(Drive, TakesTheStepsOfItsPaceInBlocks) {
 }
 
 TEST(Drive, EndsWithARefusalThatNobodyLooksAt) {
-  Driving d;
-  Picky stepper(d.scene, 1, 2.5 * whole_step);
+  Driving d([](double time, double) { return time <= 2.5 * whole_step; });
   int looks = 0;
   const DriveState driven =
-      drive(stepper, d.state, {whole_step, 7}, [&](auto&&...) { return ++looks > 0; });
+      drive(d.stepper, d.state, {whole_step, 7}, [&](auto&&...) { return ++looks > 0; });
   EXPECT_EQ(driven.end, End::refused);
   EXPECT_EQ(driven.result.status, inextensible::Status::not_converged);
+  EXPECT_EQ(driven.result.iterations, 7);
+  EXPECT_STREQ(driven.result.detail, "not to my taste");
   EXPECT_EQ(driven.steps + looks, 3 + 3);
 }
 
 TEST(Drive, HalvesStepsAsOftenAsItMay) {
   for (const int halvings : {1, 2}) {
-    Driving d;
-    Picky stepper(d.scene, whole_step / 4);
+    Driving d([](double, double h) { return h <= whole_step / 4; });
     int part = 0;
-    const DriveState driven = drive(stepper, d.state, {whole_step, 2, halvings},
+    const DriveState driven = drive(d.stepper, d.state, {whole_step, 2, halvings},
                                     [&](const State&, const DriveState& so_far) {
                                       ++part;
                                       EXPECT_EQ(so_far.whole, part % 4 == 0);
@@ -82,23 +82,41 @@ TEST(Drive, HalvesStepsAsOftenAsItMay) {
                                     });
     EXPECT_EQ(driven.end, halvings == 1 ? End::refused : End::arrived);
     EXPECT_EQ(part, halvings == 1 ? 0 : 8);
+    // After four steps of a quarter a half is tried again.
+    EXPECT_EQ(d.stepper.work().rejected_steps, halvings == 1 ? 2 : 3);
+    EXPECT_EQ(d.stepper.work().steps, part);
     if (halvings == 1) {
       EXPECT_EQ(driven.next, whole_step / 2) << "was refused as well";
+      EXPECT_TRUE(d.state.x == d.scene.start.x && d.state.time == 0);
     }
     EXPECT_EQ(driven.smallest, halvings == 1 ? whole_step : whole_step / 4);
   }
 }
 
+TEST(Drive, GrowsBackAfterAHardStretchAndMeetsEveryMultipleOfItsStep) {
+  Driving d([](double time, double h) { return time < 1 || time >= 2 || h < 0.2; });
+  const DriveState driven = drive(
+      d.stepper, d.state, {1, 8, usual_halvings}, [](const State& now, const DriveState& so_far) {
+        EXPECT_EQ(so_far.whole, now.time == std::floor(now.time)) << now.time;
+        // A step begins at a multiple of itself.
+        EXPECT_EQ(std::fmod(now.time, so_far.last), 0) << now.time;
+        return true;
+      });
+  EXPECT_EQ(driven.end, End::arrived);
+  EXPECT_EQ(d.state.time, 8);
+  EXPECT_EQ(driven.last, 1);
+  EXPECT_EQ(driven.smallest, 0.125);
+}
+
 TEST(Drive, StopsWhereItIsToldTo) {
   Driving d;
-  Picky stepper(d.scene, 1);
   const auto three = [](const State&, const DriveState& driven) { return driven.steps < 3; };
-  EXPECT_EQ(drive(stepper, d.state, {whole_step, 7}, three).end, End::stopped);
-  const DriveState late = drive(stepper, d.state, {whole_step, 7}, {.timeout = -1});
+  EXPECT_EQ(drive(d.stepper, d.state, {whole_step, 7}, three).end, End::stopped);
+  const DriveState late = drive(d.stepper, d.state, {whole_step, 7}, {.timeout = -1});
   EXPECT_EQ(late.end, End::timed_out);
   EXPECT_EQ(late.steps, 1);
-  EXPECT_EQ(drive(stepper, d.state, {whole_step, 1}, {.timeout = -1}).end, End::arrived);
-  EXPECT_THROW(drive(stepper, d.state, {whole_step, 7}, {.interrupted = [] { return true; }}),
+  EXPECT_EQ(drive(d.stepper, d.state, {whole_step, 1}, {.timeout = -1}).end, End::arrived);
+  EXPECT_THROW(drive(d.stepper, d.state, {whole_step, 7}, {.interrupted = [] { return true; }}),
                Interrupted);
 }
 

@@ -1,16 +1,9 @@
 // The error is tested by mutation: a run of the wrong physics is off by more than the headline's
 // level, and one of the right physics is not.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <filesystem>
-#include <functional>
-#include <stdexcept>
 
 #include "harness/base/files.h"
 #include "harness/judge/drive.h"
 #include "harness/judge/judge.h"
-#include "support/effort.h"
 #include "support/random_mesh.h"
 #include "support/scenes.h"
 

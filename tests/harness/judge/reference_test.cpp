@@ -4,12 +4,10 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <random>
 
 #include "harness/base/errors.h"
-#include "harness/base/files.h"
 #include "harness/base/interrupt.h"
 #include "harness/judge/reference_routes.h"
 #include "harness/scenes/pendulum.h"

@@ -10,7 +10,6 @@
 #include <set>
 
 #include "harness/stability/stability.h"
-#include "solvers/registry.h"
 #include "support/effort.h"
 #include "support/param_name.h"
 

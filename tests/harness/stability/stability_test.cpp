@@ -1,8 +1,6 @@
 // The hard cases: the judge sees what it is there to see, and the outcomes that theory fixes.
 #include "harness/stability/stability.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
 

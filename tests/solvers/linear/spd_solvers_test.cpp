@@ -1,13 +1,11 @@
 // What every linear solver of the list promises, on every matrix that it takes, against dense
 // algebra; and what some of them promise beyond that.
-#include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <limits>
 #include <unsupported/Eigen/KroneckerProduct>
 
 #include "solvers/linear/multifrontal_cholesky.h"
-#include "solvers/linear/spd_solver.h"
 #include "support/random_mesh.h"
 
 namespace inextensible {
@@ -23,8 +21,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 MatrixXd schur_complement(const Problem& problem, const Positions& x) {
-  const MatrixXd j = testing::dense_gradient(problem, x);
-  return j * testing::inverse_masses3(problem).asDiagonal() * j.transpose();
+  return testing::dense_gradient(problem, x) * testing::dense_moves(problem, x);
 }
 
 // Sparse, with couplings of all strengths.

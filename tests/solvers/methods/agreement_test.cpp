@@ -1,6 +1,5 @@
 // Methods that solve the same equations by different iterations take the same steps as far as they
 // have converged. What ADMM and augmented VBD keep and remember.
-#include <gtest/gtest.h>
 
 #include <cmath>
 

@@ -1,23 +1,17 @@
 // What every method in every time stepper must hold, besides what `bench check` asks of it
 // (conformance_test.cpp): coordinates and units, obstacles that move, refusals that leave nothing
 // behind, honest random steps, no allocation.
-#include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <atomic>
-#include <cmath>
 #include <cstdlib>
-#include <map>
 #include <numbers>
 
-#include "harness/scenes/scene.h"
 #include "harness/stability/trial.h"
 #include "solvers/problem/triangle_collider.h"
-#include "solvers/systems/constrained_acceleration.h"
 #include "solvers/systems/constraint_system.h"
 #include "support/motion.h"
 #include "support/param_name.h"
-#include "support/random_mesh.h"
 
 namespace {
 std::atomic<long> allocations{0};

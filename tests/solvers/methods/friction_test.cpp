@@ -1,13 +1,11 @@
 // Friction of every kind of method against what statics and dynamics say of it: a rope on a slope,
 // a vertex on a turntable, and a rope round a post.
-#include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
 
 #include "solvers/problem/triangle_collider.h"
-#include "solvers/registry.h"
 #include "support/contact.h"
 #include "support/motion.h"
 #include "support/param_name.h"

@@ -2,13 +2,8 @@
 // limiters that make such passes.
 #include "solvers/methods/strain_passes.h"
 
-#include <gtest/gtest.h>
-
-#include <numeric>
-
 #include "solvers/registry.h"
 #include "support/motion.h"
-#include "support/random_mesh.h"
 
 namespace inextensible {
 namespace {

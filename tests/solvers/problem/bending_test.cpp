@@ -1,11 +1,7 @@
 // Bending: energies of shapes of known curvature, and forces against the energy's differences.
 #include "solvers/problem/bending.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
-#include <cmath>
-#include <functional>
 #include <numbers>
 
 #include "solvers/problem/forces.h"

@@ -1,8 +1,6 @@
 // Contact and friction of single vertices against their definitions.
 #include "solvers/problem/contacts.h"
 
-#include <gtest/gtest.h>
-
 #include "support/contact.h"
 #include "support/random_mesh.h"
 

@@ -2,13 +2,9 @@
 // closest points by another formula and the winding number.
 #include "solvers/problem/triangle_collider.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
-#include <cmath>
 
 #include "support/contact.h"
-#include "support/effort.h"
 #include "support/random_mesh.h"
 
 namespace inextensible {

@@ -1,10 +1,6 @@
 // What rows and their tables promise: of methods and their settings.
 #include "solvers/registry.h"
 
-#include <gtest/gtest.h>
-
-#include <set>
-
 #include "solvers/problem/edge_constraints.h"
 #include "support/random_mesh.h"
 

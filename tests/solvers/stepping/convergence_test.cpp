@@ -1,16 +1,12 @@
 // Orders of convergence on a smooth stretch of the chain's motion, against the pendulum in angles;
 // energy behaviour; BDF2's own identities.
-#include <gtest/gtest.h>
 
 #include <cmath>
-#include <vector>
 
 #include "harness/base/statistics.h"
 #include "harness/judge/mechanics.h"
 #include "harness/judge/reference.h"
 #include "harness/scenes/pendulum.h"
-#include "harness/scenes/scene.h"
-#include "solvers/registry.h"
 #include "solvers/systems/constrained_acceleration.h"
 #include "support/motion.h"
 #include "support/param_name.h"

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <string>
 
 #include "harness/scenes/meshes.h"
 #include "solvers/registry.h"

@@ -1,5 +1,6 @@
-// C, its gradient, J W J^T with and without contacts, and SHAKE's matrix, by slow second routes.
-#include <gtest/gtest.h>
+// C, its gradient, J W J^T with and without contacts, SHAKE's matrix and constrained accelerations,
+// by slow second routes and mechanics. (Starting half a step back is what lets every method fall
+// exactly: every_method_test.cpp.)
 
 #include <Eigen/Dense>
 #include <Eigen/SparseCore>
@@ -7,9 +8,10 @@
 #include <numeric>
 
 #include "solvers/linear/spd_solver.h"
+#include "solvers/systems/constrained_acceleration.h"
 #include "solvers/systems/schur_complement.h"
 #include "support/contact.h"
-#include "support/random_mesh.h"
+#include "support/motion.h"
 
 namespace inextensible {
 namespace {
@@ -168,9 +170,8 @@ TEST(LuSolver, IsBackwardStableOnShakesMatrices) {
       const SchurComplement schur(edges, problem.vertices(), Triangle::both);
       const auto solver = make_lu_solver(schur.pattern());
       schur.assemble(uy, ux, solver->values());
-      const MatrixXd matrix = testing::dense_gradient(problem, y) *
-                              testing::inverse_masses3(problem).asDiagonal() *
-                              testing::dense_gradient(problem, graph.x).transpose();
+      const MatrixXd matrix =
+          testing::dense_gradient(problem, y) * testing::dense_moves(problem, graph.x);
       ASSERT_TRUE(solver->factor());
       const VectorXd b = VectorXd::LinSpaced(edges.count(), -1, 2);
       VectorXd x = b;
@@ -192,6 +193,49 @@ TEST(LuSolver, SeesDependentRowsWithoutAnyZeroColumn) {
     solver->values()[0] = std::nan("");
     EXPECT_FALSE(solver->factor()) << tridiagonal;
   }
+}
+
+// a = W f - W J^T lambda from the definitions.
+TEST(ConstrainedAcceleration, IsThatOfDenseAlgebra) {
+  testing::for_seeds(20, [&](testing::Random& random, std::uint64_t seed) {
+    const auto mesh = seed % 2 ? testing::random_mesh(random, 5, 6, 3)
+                               : testing::random_graph(random, 30, 20, 2, 1e-3);
+    ProblemParts parts = testing::parts_of(*mesh.problem);
+    parts.gravity = {1, -9.81, 2};
+    const Problem p(parts);
+    const State state = testing::moving_state(random, mesh, 1);
+    const MatrixXd j = testing::dense_gradient(p, state.x), wjt = testing::dense_moves(p, state.x);
+    Positions fall = p.gravity().replicate(1, p.vertices());
+    for (const int v : p.pinned()) fall.col(v).setZero();
+    // J' v: J is linear in x.
+    const VectorXd curvature = testing::dense_gradient(p, state.v) * state.v.reshaped();
+    const VectorXd rhs = j * fall.reshaped() + curvature;
+    const VectorXd expected = fall.reshaped() - wjt * (j * wjt).ldlt().solve(rhs);
+    const Positions a = constrained_acceleration(p, state);
+    EXPECT_LT((a.reshaped() - expected).norm(), 1e-8 * expected.norm());
+    for (const int v : p.pinned()) EXPECT_EQ(a.col(v), Eigen::Vector3d::Zero());
+  });
+}
+
+// A straight row of unequal masses between two pins: J W J^T is singular.
+TEST(ConstrainedAcceleration, OfATautRowIsWhatTheRowCannotHinder) {
+  Positions x = Positions::Zero(3, 5);
+  x.row(0) << 0, 1, 2, 3, 4;
+  ProblemParts parts =
+      testing::parts_at_rest(x, {{0, 1}, {1, 2}, {2, 3}, {3, 4}}, {1, 2, 0.5, 3, 1}, {0, 4});
+  parts.gravity = {4, -9, 0};
+  const Positions a = constrained_acceleration(Problem(parts), {x, Positions::Zero(3, 5), 0});
+  for (int v = 1; v < 4; ++v) EXPECT_NEAR((a.col(v) - Eigen::Vector3d(0, -9, 0)).norm(), 0, 1e-6);
+}
+
+// An edge of no length has no direction, and no force.
+TEST(ConstrainedAcceleration, KnowsNoForceOfAnEdgeWithoutLength) {
+  const testing::HangingRope rope(2, 1, 1);
+  State start = rope.start;
+  start.x.col(2) = start.x.col(1);
+  const Positions a = constrained_acceleration(*rope.problem, start);
+  EXPECT_NEAR(a.col(1).norm(), 0, 1e-12);
+  EXPECT_NEAR((a.col(2) - rope.problem->gravity()).norm(), 0, 1e-12);
 }
 
 }  // namespace
