@@ -38,7 +38,7 @@ def step_name(step: float) -> str:
 
 def scene_words(scene: str) -> str:
     """As people call it: of a mesh its file's name."""
-    return clean(scene.split(":")[1].split(",")[0].rsplit("/", 1)[-1] if ":" in scene else scene)
+    return clean(scene.split(":")[1].split(",")[0].rsplit("/", 1)[-1] if scene.startswith(("mesh:", "folder:")) else scene)
 
 
 def subject(scene: str, vertices: int | None = None) -> str:
