@@ -162,7 +162,6 @@ ParameterInfos cloth_parameters(int n) {
        zero_too, 1e9}};
 }
 
-// Parameters of a cloth that falls onto a sphere.
 ParameterInfos drape_parameters(const ParameterInfos& cloth, const ParameterInfos& own,
                                 double duration = 1) {
   return joined(
@@ -181,20 +180,6 @@ ParameterInfos drape_parameters(const ParameterInfos& cloth, const ParameterInfo
 ParameterInfos fabric_square(double n, const ClothDefaults& fabric) {
   return joined({{{"n", n, "vertices along each side", 3, 4000, true}, {"side", 1, "m", 0, 1e6}},
                  fabric_parameters(fabric)});
-}
-
-SceneType fabric_on_ball(const char* name, const char* summary, const ClothDefaults& fabric) {
-  return {.name = name,
-          .summary = summary,
-          .parameters = drape_parameters(fabric_square(71, fabric), {}),
-          .build = build_drape,
-          .counts = count_square,
-          .like = "drape"};
-}
-
-SceneType measured_fabric(const char* name, const char* summary, std::string_view cloth) {
-  const Fabric& measured = fabric(cloth);
-  return fabric_on_ball(name, summary, {measured.density, fabric_shear, measured.bending, 0.05});
 }
 
 // Stiff cotton in air, whose start has waves.
@@ -266,10 +251,13 @@ std::vector<SceneType> cloth_scenes() {
              zero_too, 1, true}}),
        .build = build_drape,
        .counts = count_square},
-      fabric_on_ball("fabric_drape",
-                     "the drape with a fabric's weight, shear and bending in physical units, "
-                     "implicit, and air",
-                     {0.15, 20, 1e-5, 0.05}),
+      {.name = "fabric_drape",
+       .summary = "the drape with a fabric's weight, shear and bending in physical units, "
+                  "implicit, and air",
+       .parameters = drape_parameters(fabric_square(71, {0.15, 20, 1e-5, 0.05}), {}),
+       .build = build_drape,
+       .counts = count_square,
+       .like = "drape"},
       // Known to its end: air and bending let it fold in one way only.
       {.name = "settling_drape",
        .summary = "stiff cotton that falls onto a sphere in air, off its axis, and comes to rest",
@@ -299,10 +287,6 @@ std::vector<SceneType> cloth_scenes() {
        .counts = count_square,
        .exact = block_at,
        .like = "drape"},
-      measured_fabric("cotton_drape", "fabric_drape of cotton broadcloth, as measured", "cotton"),
-      measured_fabric("wool_drape", "fabric_drape of wool tropical, as measured", "wool"),
-      measured_fabric("polyester_drape", "fabric_drape of polyester tropical, as measured",
-                      "polyester"),
       {.name = "folded_drape",
        .summary =
            "the drape, from a start in folds that shear it: as hard as mid-fall, at any size",

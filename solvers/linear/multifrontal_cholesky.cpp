@@ -358,7 +358,6 @@ void MultifrontalCholesky<Real>::place_entries() {
   }
 }
 
-// The place of a row of the matrix among a front's rows.
 template <class Real>
 int MultifrontalCholesky<Real>::place_in(const Front& front, int row) const {
   if (row < front.first_column + front.columns) return row - front.first_column;

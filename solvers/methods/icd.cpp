@@ -189,7 +189,6 @@ class Icd final : public VelocityFilter {
     merit_ = sum + c_.squaredNorm();
   }
 
-  // The point on the manifold that is closest to x0_.
   StepResult closest(double h, Iterate x, WorkCounters& work) {
     mu_ = previous_lambda_ * (h * h);
     StepResult result = newton(h, x, work);

@@ -171,7 +171,6 @@ struct VertexPasses::Model {
   double f[3][width], h[6][width];
 };
 
-// Adds the springs at a group's vertices.
 void VertexPasses::add_springs(const Group& group, double stiffness_scale, Model& model) const {
   auto& [f, h] = model;
   const double *x = x_.col(0).data(), *y = x_.col(1).data(), *z = x_.col(2).data();

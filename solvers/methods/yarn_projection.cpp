@@ -69,7 +69,6 @@ class Experience {
   int retry_interval_ = 0, until_retry_ = 0;  // steps until the more expensive way is tried again
 };
 
-// Projection of the whole cloth.
 class WholeCloth {
  public:
   WholeCloth(const Problem& problem, const BackendOptions& options)

@@ -1,5 +1,4 @@
-// The pendulum in angles against closed forms and dense equations of motion; what is stored.
-#include <gsl/gsl_sf_ellint.h>
+// The pendulum in angles against dense equations of motion and known places; what is stored.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -18,21 +17,6 @@ namespace {
 
 using nlohmann::json;
 using testing::parameters;
-
-TEST(Pendulum, OfOneLinkSwingsWithTheEllipticPeriod) {
-  for (const double amplitude : {0.1, 1.0, 2.5}) {
-    // From the x axis, so that amplitude is measured from straight down.
-    const double length = 0.7, start = -M_PI / 2 + amplitude;
-    Pendulum pendulum({{2.0}, {length}, 9.81}, {start});
-    const double period = 4 * std::sqrt(length / 9.81) *
-                          gsl_sf_ellint_Kcomp(std::sin(amplitude / 2), GSL_PREC_DOUBLE);
-    pendulum.advance(period / 4, 1e-13);
-    EXPECT_NEAR(pendulum.positions()(0, 1), 0, 1e-10) << "at the bottom after a quarter";
-    pendulum.advance(period, 1e-13);
-    EXPECT_NEAR(pendulum.positions()(0, 1), length * std::cos(start), 1e-10);
-    EXPECT_NEAR(pendulum.positions()(1, 1), length * std::sin(start), 1e-10);
-  }
-}
 
 // Lagrange's equations in angles, dense: sum_j A_ij cos(theta_i - theta_j) l_i l_j theta_j'' +
 // A_ij sin(theta_i - theta_j) l_i l_j theta_j'^2 + g l_i cos(theta_i) M_i = 0 with M_i the mass

@@ -112,26 +112,13 @@ class Corrupted final : public VelocityFilter {
   std::unique_ptr<VelocityFilter> filter_;
 };
 
-template <std::size_t I>
-std::unique_ptr<Stepper> make(std::shared_ptr<const Problem> problem, const BackendOptions& o) {
-  auto filter = std::make_unique<Corrupted>(*problem, o.strain_limit, faults[I]);
-  return std::make_unique<FilterStepper>(std::move(problem), std::move(filter));
-}
-
-Backend row(const char* name, decltype(Backend::make) made = make<0>) {
-  return {name, "fast projection, corrupted", StrainControl::strain_limit, true, {}, made};
-}
-
-template <std::size_t... I>
-std::vector<Backend> corrupted_rows(std::index_sequence<I...> /*all*/) {
-  return {row(faults[I].name, make<I>)...};
-}
-
-std::unique_ptr<Stepper> over_relaxed(std::shared_ptr<const Problem> problem,
-                                      const BackendOptions& given) {
-  BackendOptions options = given;
-  options.settings["relaxation"] = 1.3;
-  return make_stepper("gauss_seidel", std::move(problem), options);
+Backend row(const char* name, const Fault& fault = faults[0]) {
+  Backend corrupted{.name = name, .summary = "fast projection, corrupted"};
+  corrupted.make = [&fault](std::shared_ptr<const Problem> problem, const BackendOptions& options) {
+    auto filter = std::make_unique<Corrupted>(*problem, options.strain_limit, fault);
+    return std::make_unique<FilterStepper>(std::move(problem), std::move(filter));
+  };
+  return corrupted;
 }
 
 using Checks = std::set<std::string>;
@@ -153,8 +140,12 @@ class BrokenSolvers : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     if (find_backend("sound")) return;
-    auto rows = corrupted_rows(std::make_index_sequence<std::size(faults)>());
-    rows.push_back(row("over_relaxed", over_relaxed));
+    std::vector<Backend> rows{row("over_relaxed")};
+    rows[0].make = [](std::shared_ptr<const Problem> problem, BackendOptions options) {
+      options.settings["relaxation"] = 1.3;
+      return make_stepper("gauss_seidel", std::move(problem), options);
+    };
+    for (const Fault& fault : faults) rows.push_back(row(fault.name, fault));
     add_backends(rows);
   }
 };

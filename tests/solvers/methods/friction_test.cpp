@@ -19,12 +19,7 @@ using std::numbers::pi;
 constexpr double gravity = 9.81, short_step = 1.0 / 400;
 
 Settings stiff_enough(const char* solver) {
-  Settings settings;
-  for (const SettingInfo& setting : find_backend(solver)->settings) {
-    if (setting.name == std::string("stiffness")) settings["stiffness"] = 1e6;
-    if (setting.name == std::string("penalty")) settings["direction_tolerance"] = 0.1;
-  }
-  return settings;
+  return names::those_of(solver, {{"stiffness", 1e6}, {"direction_tolerance", 0.1}});
 }
 
 class Friction : public ::testing::TestWithParam<const char*> {};

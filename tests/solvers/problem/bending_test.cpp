@@ -38,7 +38,6 @@ TEST(YarnBending, OfACircleIsHalfItsRigidityTimesCurvatureSquaredTimesLength) {
   EXPECT_LT(last, 0.01);
 }
 
-// Free edges bear no stencil of their own: a strip along them is missing.
 // Shear, bending and gravity together, on a sheet crumpled at random: stencils of consecutive
 // vertices, which are found side by side, and others.
 TEST(Forces, AreTheEnergysDifferences) {
