@@ -1,6 +1,5 @@
 #include "solvers/c_method.h"
 
-#include <algorithm>
 #include <iterator>
 #include <stdexcept>
 #include <type_traits>

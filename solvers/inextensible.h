@@ -6,7 +6,7 @@
  *
  * The library defines one function, inextensible_plugin, which returns a table of methods. A method
  * makes an object for a scene, takes steps with it, and destroys it. Several objects may exist at
- * once; all calls come from one thread. docs/plugins.md has a solver in 40 lines.
+ * once; all calls come from one thread. docs/plugins.md has a solver in 60 lines.
  *
  * Units are SI. Vectors are three doubles, x y z, one after the other. Vertices are counted from 0.
  * Structs grow at their end only: INEXTENSIBLE_ABI changes when an old plug-in would break.

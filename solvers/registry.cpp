@@ -1,7 +1,5 @@
 #include "solvers/registry.h"
 
-#include <algorithm>
-#include <cmath>
 #include <set>
 #include <stdexcept>
 

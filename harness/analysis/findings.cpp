@@ -1,10 +1,5 @@
 #include "harness/analysis/findings.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <utility>
-
 #include "harness/base/text.h"
 
 namespace harness::analysis {

@@ -1,6 +1,5 @@
 #include "harness/analysis/measured_point.h"
 
-#include <algorithm>
 #include <iomanip>
 #include <sstream>
 

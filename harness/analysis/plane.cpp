@@ -1,11 +1,6 @@
 #include "harness/analysis/plane.h"
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <limits>
 #include <stdexcept>
-#include <tuple>
 
 #include "harness/points/suite.h"
 

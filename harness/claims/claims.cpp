@@ -1,15 +1,11 @@
 #include "harness/claims/claims.h"
 
-#include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <set>
-#include <tuple>
 
 #include "harness/analysis/plane.h"
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
-#include "harness/base/json.h"
 #include "harness/base/text.h"
 #include "harness/points/result_file.h"
 

@@ -1,8 +1,5 @@
 #include "harness/judge/energy.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "harness/base/text.h"
 #include "harness/judge/mechanics.h"
 #include "solvers/problem/forces.h"

@@ -1,7 +1,5 @@
 #include "harness/judge/judge.h"
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "harness/base/statistics.h"

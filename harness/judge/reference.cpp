@@ -1,13 +1,10 @@
 #include "harness/judge/reference.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 #include "harness/base/errors.h"
-#include "harness/base/fields.h"
 #include "harness/base/files.h"
-#include "harness/base/json.h"
 #include "harness/base/text.h"
 
 namespace harness {

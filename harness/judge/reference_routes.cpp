@@ -4,8 +4,6 @@
 #include <gsl/gsl_rng.h>
 
 #include <algorithm>
-#include <cmath>
-#include <memory>
 
 #include "harness/base/clock.h"
 #include "harness/base/errors.h"

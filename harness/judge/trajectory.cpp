@@ -1,8 +1,5 @@
 #include "harness/judge/trajectory.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <numeric>
@@ -147,6 +144,7 @@ Trajectory read_trajectory(const std::vector<std::string>& files, const Scene& s
   }
   std::vector<double>& times = frames.times;
   if (rate > 0) {
+    if (!times.empty()) throw UsageError("'" + file + "' has times of its own; leave out --fps");
     times.resize(frames.path.size());
     for (std::size_t k = 0; k < times.size(); ++k) times[k] = static_cast<double>(k) / rate;
   }
@@ -167,6 +165,9 @@ Trajectory read_trajectory(const std::vector<std::string>& files, const Scene& s
   if (times.back() < scene.duration - 0.5 * interval)
     throw UsageError(concat("'", file, "' ends at ", times.back(), " s, the scene at ",
                             scene.duration, " s: frames are missing"));
+  if (times.back() > 1.5 * scene.duration + interval)
+    throw UsageError(concat("'", file, "' lasts ", times.back(), " s, the scene ", scene.duration,
+                            " s; times are in seconds, and --fps is in frames a second"));
   return {interval, std::move(frames.path)};
 }
 

@@ -1,7 +1,5 @@
 #include "harness/points/contestant.h"
 
-#include "harness/base/json.h"
-
 namespace harness {
 namespace {
 

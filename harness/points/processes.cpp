@@ -173,9 +173,9 @@ ProcessSolver process_solver(const std::string& command) {
                                      {"drag", &row.takes_drag},
                                      {"stiff_forces", &row.takes_implicit_forces},
                                      {"momentum", &row.conserves_momentum}};
-  const json takes = about.value("takes", json::array());
+  const auto takes = about.value("takes", std::vector<std::string>());
   const json settings = about.value("settings", json::object());
-  for (const std::string part : takes) {
+  for (const std::string& part : takes) {
     if (!parts.contains(part))
       throw std::runtime_error("it takes '" + shortened(part) + "', which is unknown");
     *parts.at(part) = true;

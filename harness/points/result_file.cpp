@@ -3,7 +3,6 @@
 #include <set>
 
 #include "harness/base/files.h"
-#include "harness/base/json.h"
 #include "harness/base/statistics.h"
 #include "harness/base/text.h"
 #include "harness/points/schema.h"

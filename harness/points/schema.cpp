@@ -1,7 +1,6 @@
 #include "harness/points/schema.h"
 
 #include "harness/base/files.h"
-#include "harness/base/json.h"
 #include "harness/points/suite.h"
 
 namespace harness {

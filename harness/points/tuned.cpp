@@ -1,7 +1,6 @@
 #include "harness/points/tuned.h"
 
 #include "harness/base/files.h"
-#include "harness/base/json.h"
 #include "harness/base/text.h"
 #include "harness/points/context.h"
 #include "harness/points/schema.h"

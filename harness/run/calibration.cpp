@@ -3,11 +3,6 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_roots.h>
 
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <memory>
-
 #include "harness/base/text.h"
 #include "harness/judge/mechanics.h"
 

@@ -1,10 +1,6 @@
 #include "harness/run/choose.h"
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
-#include <tuple>
-#include <utility>
 
 #include "harness/base/text.h"
 

@@ -1,17 +1,8 @@
 #include "harness/run/execute.h"
 
-#include <algorithm>
-#include <cmath>
-#include <exception>
-#include <map>
-#include <optional>
-#include <string>
-#include <utility>
-
 #include "harness/base/child_process.h"
 #include "harness/base/text.h"
 #include "harness/points/point_json.h"
-#include "harness/scenes/scene.h"
 
 namespace harness {
 namespace {

@@ -1,12 +1,8 @@
 #include "harness/run/measure_point.h"
 
-#include <algorithm>
 #include <fstream>
-#include <limits>
 #include <new>
 #include <stdexcept>
-#include <string>
-#include <utility>
 
 #include "harness/base/text.h"
 #include "harness/judge/mechanics.h"

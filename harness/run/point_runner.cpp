@@ -1,8 +1,5 @@
 #include "harness/run/point_runner.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "harness/base/child_process.h"
 #include "harness/base/clock.h"
 #include "harness/base/statistics.h"

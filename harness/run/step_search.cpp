@@ -1,9 +1,6 @@
 #include "harness/run/step_search.h"
 
-#include <algorithm>
-#include <limits>
 #include <set>
-#include <utility>
 
 namespace harness {
 namespace {

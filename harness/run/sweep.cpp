@@ -1,12 +1,7 @@
 #include "harness/run/sweep.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <map>
 #include <random>
 #include <set>
-#include <tuple>
 
 #include "harness/run/step_search.h"
 

@@ -1,15 +1,9 @@
 #include "harness/run/tune.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <map>
 #include <random>
 #include <set>
-#include <utility>
 
 #include "harness/base/text.h"
-#include "harness/points/point_json.h"
 #include "harness/run/step_search.h"
 
 namespace harness {

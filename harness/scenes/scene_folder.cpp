@@ -222,8 +222,9 @@ void write_scene(const std::string& folder, const Scene& scene, const json& abou
 }
 
 bool names_folder(std::string_view scene) {
+  const auto is_scene = [&](const SceneType& type) { return type.name == scene; };
   return scene.starts_with(folder_prefix) ||
-         (!scene.empty() &&
+         (std::ranges::none_of(scene_types(), is_scene) && !scene.empty() &&
           std::filesystem::is_regular_file(std::filesystem::path(scene) / "scene.json"));
 }
 

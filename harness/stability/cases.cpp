@@ -1,9 +1,5 @@
 #include "harness/stability/cases.h"
 
-#include <array>
-#include <cmath>
-#include <map>
-
 namespace harness::cases {
 
 using inextensible::Positions;

@@ -1,14 +1,10 @@
 #include "harness/stability/stability.h"
 
-#include <algorithm>
-
 #include "harness/base/errors.h"
-#include "harness/base/files.h"
 #include "harness/points/contestant.h"
 #include "harness/points/point_json.h"
 #include "harness/points/schema.h"
 #include "harness/stability/cases.h"
-#include "solvers/registry.h"
 
 namespace harness {
 

@@ -1,16 +1,9 @@
 #include "harness/stability/trial.h"
 
-#include <algorithm>
-#include <cmath>
-#include <utility>
-#include <variant>
-
 #include "harness/base/child_process.h"
-#include "harness/base/clock.h"
 #include "harness/base/text.h"
 #include "harness/points/point_json.h"
 #include "solvers/problem/forces.h"
-#include "solvers/registry.h"
 
 namespace harness {
 

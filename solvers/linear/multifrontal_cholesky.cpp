@@ -6,7 +6,6 @@
 #include <cstring>
 #include <stdexcept>
 #include <type_traits>
-#include <utility>
 
 #include "solvers/linear/cholmod_symbolic.h"
 

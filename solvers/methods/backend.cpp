@@ -1,10 +1,7 @@
 #include "solvers/methods/backend.h"
 
-#include <algorithm>
-#include <cmath>
 #include <sstream>
 #include <stdexcept>
-#include <utility>
 
 namespace inextensible {
 namespace {

@@ -12,7 +12,6 @@
 #include "solvers/methods/colored_edges.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <map>
 #include <tuple>

@@ -1,9 +1,5 @@
 #include "solvers/methods/spring_energy.h"
 
-#include <algorithm>
-#include <cmath>
-#include <utility>
-
 #include "solvers/problem/forces.h"
 
 namespace inextensible {

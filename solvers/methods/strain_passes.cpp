@@ -10,8 +10,6 @@
 // most of them, square roots and divisions are left out.
 #include "solvers/methods/strain_passes.h"
 
-#include <algorithm>
-#include <array>
 #include <bit>
 #include <experimental/simd>
 #include <map>

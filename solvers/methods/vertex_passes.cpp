@@ -4,12 +4,8 @@
 // and the ends of their springs a pass.
 #include "solvers/methods/vertex_passes.h"
 
-#include <algorithm>
-#include <cmath>
 #include <iterator>
-#include <limits>
 #include <map>
-#include <utility>
 
 namespace inextensible {
 

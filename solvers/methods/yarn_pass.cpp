@@ -12,9 +12,6 @@
 // two passes over links forwards and one back a yarn.
 #include "solvers/methods/yarn_pass.h"
 
-#include <algorithm>
-#include <array>
-
 namespace inextensible {
 namespace {
 

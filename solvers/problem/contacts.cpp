@@ -1,7 +1,5 @@
 #include "solvers/problem/contacts.h"
 
-#include <limits>
-
 namespace inextensible {
 
 // A depth that no picture shows and no strain notices, in shortest rest lengths; without edges, m.

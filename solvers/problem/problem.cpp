@@ -1,7 +1,6 @@
 #include "solvers/problem/problem.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 #include <sstream>

@@ -3,9 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <iterator>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <numeric>

@@ -1,7 +1,5 @@
 #include "solvers/stepping/stepper.h"
 
-#include <cmath>
-
 namespace inextensible {
 
 Stepper::Stepper(std::shared_ptr<const Problem> problem, bool own_contacts)

@@ -4,8 +4,6 @@
 // part of mu in the null space of A moves nothing.
 #include "solvers/systems/constrained_acceleration.h"
 
-#include <limits>
-
 #include "solvers/linear/spd_solver.h"
 #include "solvers/problem/forces.h"
 #include "solvers/systems/schur_complement.h"

@@ -1,8 +1,5 @@
 #include "solvers/systems/constraint_system.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace inextensible {
 namespace {
 

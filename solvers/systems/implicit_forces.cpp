@@ -1,7 +1,6 @@
 #include "solvers/systems/implicit_forces.h"
 
 #include <cmath>
-#include <limits>
 
 #include "solvers/problem/forces.h"
 #include "solvers/systems/vertex_matrix.h"

@@ -1,7 +1,6 @@
 #include "solvers/systems/kkt_system.h"
 
 #include <Eigen/SparseCholesky>
-#include <algorithm>
 
 #include "solvers/linear/spd_solver.h"
 

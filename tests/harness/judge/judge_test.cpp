@@ -6,11 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <cmath>
-#include <limits>
 #include <random>
 
-#include "harness/judge/crossings.h"
 #include "harness/judge/mechanics.h"
 #include "support/scenes.h"
 

@@ -5,7 +5,6 @@
 #include <random>
 
 #include "harness/base/files.h"
-#include "harness/base/json.h"
 #include "harness/judge/drive.h"
 #include "harness/run/measure_point.h"
 #include "harness/scenes/scene_folder.h"
@@ -119,6 +118,8 @@ TEST_F(Exchange, FramesThatAreNotTheScenesAreRefused) {
   for (Positions& x : bad = frames) x = x.rowwise().reverse().eval();
   refused(npz(bad, times), 0, "order");
   refused(npz(frames, {0, 0.04, 0.08, 0.12, 0.16, 0.24}), 0, "equally spaced");
+  refused(npz(frames, {0, 40, 80, 120, 160, 200}), 0, "times are in seconds");
+  refused(npz(frames, times), 25, "times of its own");
   std::ofstream(folder.file("t.npz")) << "no archive";
   refused(folder.file("t.npz"), 25, ".npz");
 }

@@ -1,9 +1,6 @@
 // The hard cases: the judge sees what it is there to see, and the outcomes that theory fixes.
 #include "harness/stability/stability.h"
 
-#include <cmath>
-#include <limits>
-
 #include "support/motion.h"
 
 namespace {
