@@ -1,10 +1,10 @@
 #include "harness/points/processes.h"
 
-#include <signal.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 
+#include <csignal>
 #include <deque>
 
 #include "harness/base/clock.h"

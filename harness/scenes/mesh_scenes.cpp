@@ -213,7 +213,7 @@ inextensible::Pose pose_between(const MeshFile& body, const MeshFile& there) {
   const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() > 0 ? 1 : -1;
   const Eigen::Vector3d reflect(1, 1, sign);
   const Eigen::Matrix3d turn = svd.matrixU() * reflect.asDiagonal() * svd.matrixV().transpose();
-  const inextensible::Pose pose{turn, to - turn * from};
+  inextensible::Pose pose{turn, to - turn * from};
   for (std::size_t v = 0; v < body.vertices.size(); ++v)
     if ((pose(body.vertices[v]) - there.vertices[v]).norm() >
         1e-4 * there.vertices[v].norm() + 1e-6)
@@ -395,20 +395,45 @@ void add_bodies(MeshModel& model, std::map<std::string, std::string>& parts, con
     model.poses.push_back(pose_between(all, read(path)));
 }
 
+// Of all that the scene is made of: the content of its files, and the other words.
+std::string hash_of(const std::map<std::string, std::string>& parts) {
+  static const std::set<std::string> of_files{"file", "body", "body_then", "rest"};
+  std::string content;
+  for (const auto& [part, text] : parts) {
+    if (!of_files.contains(part)) {
+      content += part + "=" + text + ",";
+      continue;
+    }
+    for (const std::string& file : split(text, ";")) content += read_file(file, "mesh");
+  }
+  return fnv1a(content);
+}
+
+// Unstretched, and where it begins.
+template <class Read>
+void read_cloth(MeshModel& model, std::map<std::string, std::string>& parts, const MeshFile& file,
+                const Read& read) {
+  if (parts.contains("triangles")) {
+    if (parts["triangles"] != "midpoints" && parts["triangles"] != "springs")
+      throw UsageError("--triangles is '" + parts["triangles"] + "', must be midpoints or springs");
+    model.midpoints = parts["triangles"] == "midpoints";
+    if (model.midpoints && !file.ropes.empty())
+      throw UsageError("--triangles midpoints: '" + file.path +
+                       "' has lines, which have no triangles");
+  }
+  model.cloth = model.start = cloth_of(file, model.midpoints);
+  if (!parts.contains("rest")) return;
+  const MeshFile rest = read(parts["rest"]);
+  model.cloth = cloth_of(rest, model.midpoints);
+  model.start = in_shape_of(file, model.cloth, rest);
+}
+
 std::shared_ptr<const MeshModel> read_model(const std::string& name) {
   auto model = std::make_shared<MeshModel>();
   auto parts = parts_of(name);
   const std::string expected = parts["content"];
   parts.erase("content");
-  std::string content;
-  static const std::set<std::string> of_files{"file", "body", "body_then", "rest"};
-  for (const auto& [part, text] : parts) {
-    if (!of_files.contains(part)) content += part + "=" + text + ",";
-    for (const std::string& file :
-         of_files.contains(part) ? split(text, ";") : std::vector<std::string>())
-      content += read_file(file, "mesh");
-  }
-  model->identity = fnv1a(content);
+  model->identity = hash_of(parts);
   const std::string& path = parts["file"];
   if (!expected.empty() && expected != model->identity)
     throw UsageError("'" + path + "' has changed: the scene's files and pins have the hash " +
@@ -422,23 +447,15 @@ std::shared_ptr<const MeshModel> read_model(const std::string& name) {
     return mesh;
   };
   const MeshFile file = read(path);
-  if (parts.contains("triangles")) {
-    if (parts["triangles"] != "midpoints" && parts["triangles"] != "springs")
-      throw UsageError("--triangles is '" + parts["triangles"] + "', must be midpoints or springs");
-    model->midpoints = parts["triangles"] == "midpoints";
-    if (model->midpoints && !file.ropes.empty())
-      throw UsageError("--triangles midpoints: '" + path + "' has lines, which have no triangles");
-  }
-  model->cloth = model->start = cloth_of(file, model->midpoints);
-  if (parts.contains("rest")) {
-    const MeshFile rest = read(parts["rest"]);
-    model->cloth = cloth_of(rest, model->midpoints);
-    model->start = in_shape_of(file, model->cloth, rest);
-  }
+  read_cloth(*model, parts, file, read);
   if (parts.contains("pins")) model->pinned = read_pins(without_spaces(parts["pins"]), file);
   if (parts.contains("load")) model->loaded = read_pins(without_spaces(parts["load"]), file);
   model->floor = number_of(parts, "floor", -1e6);
   if (parts.contains("body")) add_bodies(*model, parts, read);
+  for (const auto& [part, option] :
+       {std::pair("body_then", "--collider-then"), {"thickness", "--thickness"}})
+    if (parts.contains(part) && !parts.contains("body"))
+      throw UsageError(std::string(option) + " goes with --collider");
   if (model->floor && parts.contains("body"))
     throw UsageError("--floor and --collider exclude each other: only one body is searched fast");
 

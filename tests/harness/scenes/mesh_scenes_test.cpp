@@ -371,6 +371,8 @@ TEST(MeshScene, BodiesMayBeSeveralOpenAndMoving) {
   const std::string then = two + ";" + file_with("bent.obj", rolled(2, 1));
   EXPECT_TRUE(
       refuses([&] { find_scene(cloth + ",body=" + one + ",body_then=" + then); }, "vertices"));
+  EXPECT_NE(refusal_of([&] { find_scene(cloth + ",thickness=0.1"); }).find("--collider"),
+            std::string::npos);
   // A sheet below the cloth, which gets a back.
   const std::string sheet =
       file_with("sheet.obj", "v -1 -1.2 -1\nv -1 -1.2 1\nv 1 -1.2 1\nv 1 -1.2 -1\nf 1 2 3 4\n");
