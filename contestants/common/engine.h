@@ -60,7 +60,7 @@ void destroy(void* object) {
   delete static_cast<E*>(object);
 }
 
-// Of engines with vertices and links, to which bench gives all other forces.
+// For engines with vertices and links, to which bench gives all other forces.
 constexpr int takes_forces = INEXTENSIBLE_TAKES_SHEAR | INEXTENSIBLE_TAKES_BENDING |
                              INEXTENSIBLE_TAKES_DRAG | INEXTENSIBLE_WANTS_FORCES;
 

@@ -77,7 +77,7 @@ std::shared_ptr<const Reference> exact_reference(const std::string& scene_name,
   return r;
 }
 
-// Of a scene whose files name its reference. Null where the scene lasts otherwise than there.
+// The reference that a scene's files name. Null where the scene lasts otherwise than there.
 std::shared_ptr<const Reference> reference_from_files(const std::string& scene,
                                                       const SceneParameters& complete) {
   const auto type = find_scene(scene);

@@ -395,7 +395,7 @@ void add_bodies(MeshModel& model, std::map<std::string, std::string>& parts, con
     model.poses.push_back(pose_between(all, read(path)));
 }
 
-// Of all that the scene is made of: the content of its files, and the other words.
+// The hash of all that the scene is made of: the content of its files, and the other words.
 std::string hash_of(const std::map<std::string, std::string>& parts) {
   static const std::set<std::string> of_files{"file", "body", "body_then", "rest"};
   std::string content;
