@@ -31,8 +31,8 @@ struct Reference {
   std::map<std::string, std::vector<double>> gap_parts;
   double valid_until = 0;   // s: the last sample before the gap exceeds 1 % of the scene's size
   double energy_drift = 0;  // of the first route, where the scene conserves energy
-  // The order of the stepping route under step halving. It explains a reference and decides nothing: kinks of
-  // contact lower an order and leave paths close.
+  // The order of the stepping route under step halving. It explains a reference and decides
+  // nothing: kinks of contact lower an order and leave paths close.
   double observed_order = unknown;
   bool exact = false;  // no route: the scene's motion is known
 
