@@ -177,7 +177,7 @@ int run(int argc, char** argv) {
            [&plugins](const Words& files) {
              plugins.insert(plugins.end(), files.begin(), files.end());
            },
-           "load solvers of your own from a shared library (solvers/inextensible.h); repeatable")
+           "load solvers of your own: a shared library, a .py file or cmd:PROGRAM; repeatable")
         ->allow_extra_args(false)
         ->type_name("FILE");
   }
