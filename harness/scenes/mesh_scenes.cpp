@@ -376,6 +376,7 @@ void add_bodies(MeshModel& model, std::map<std::string, std::string>& parts, con
   const std::optional<double> thickness = number_of(parts, "thickness", 0);
   for (const std::string& path : split(parts["body"], ";")) {
     MeshFile file = read(path);
+    all.vertices.insert(all.vertices.end(), file.vertices.begin(), file.vertices.end());
     if (thickness) file = thickened(std::move(file), *thickness);
     inextensible::TriangleMesh body = body_of(file);
     const auto first = static_cast<int>(model.body.vertices.size());
@@ -387,7 +388,6 @@ void add_bodies(MeshModel& model, std::map<std::string, std::string>& parts, con
     };
     add(model.body.vertices, body.vertices);
     add(model.body.triangles, body.triangles);
-    add(all.vertices, read(path).vertices);
   }
   if (!parts.contains("body_then")) return;
   model.poses.emplace_back();
