@@ -134,6 +134,8 @@ class StrainPasses {
   };
   struct Bounds {  // of q - 1
     float low, high, target_low, target_high;
+    // q - 1 over a target's q is 1 + q * scale - offset.
+    float low_scale, low_offset, high_scale, high_offset;
   };
   using Places = ColoredEdges::Places;
   using Displacements = ColoredEdges::Displacements;
@@ -146,8 +148,18 @@ class StrainPasses {
   std::int64_t pass(const ColoredEdges::Block& block, Displacements& to);
   template <bool middle, class Ends>
   void measure(int k, const Ends& ends);
+  struct Columns {  // of u_ and what is corrected
+    Columns(const Displacements& from, Displacements& changed) {
+      for (int axis = 0; axis < 3; ++axis) {
+        u[axis] = from.col(axis).data();
+        to[axis] = changed.col(axis).data();
+      }
+    }
+    const float* u[3];
+    float* to[3];
+  };
   template <bool middle, class Ends>
-  int correct(int k, const Ends& ends, Displacements& to);
+  int correct(int k, int first, const Ends& ends, const Columns& columns);
 
   Contacts* contacts_ = nullptr;
   ColoredEdges edges_;
