@@ -11,6 +11,7 @@ namespace {
 // The residual after one solve, relative to the right-hand side, is some roundings times the
 // condition of the matrix scaled to a unit diagonal, of which the pivots are an estimate.
 constexpr double roundings = 4 * std::numeric_limits<float>::epsilon();
+constexpr double five_digits = 1e-5;
 constexpr int most_refinements = 6;  // each gains more than two digits, or the factor is useless
 
 double norm(const std::vector<double>& v) {
@@ -52,6 +53,11 @@ bool MixedCholesky::solve_within(double tolerance, double* rhs) {
   }
   double_.solve(rhs);
   return true;
+}
+
+void MixedCholesky::solve_coordinates(Eigen::Matrix4Xd& rhs) {
+  if (!in_double_ && !(accuracy_ <= five_digits)) in_double_ = factor_in_double();
+  in_double_ ? double_.solve_coordinates(rhs) : single_.solve_coordinates(rhs);
 }
 
 bool MixedCholesky::refine(double tolerance, double* x) {

@@ -252,6 +252,90 @@ void substitute_back(const Real* l, Distance ld, int n, Real* w) {
   }
 }
 
+// In single precision a vector has room for two rows of four numbers, four rows apart, so that a
+// factor's number gets to its row within its half of a vector.
+struct TwoRows {
+  using Vector = Lanes<float>;
+  using Row = Four<float>;
+  static Vector from(const float* w) {
+    Row first, second;
+    load(w, first);
+    load(w + 16, second);
+    return __builtin_shufflevector(first, second, 0, 1, 2, 3, 4, 5, 6, 7);
+  }
+  static Row first(const Vector& v) { return __builtin_shufflevector(v, v, 0, 1, 2, 3); }
+  static Row second(const Vector& v) { return __builtin_shufflevector(v, v, 4, 5, 6, 7); }
+  template <int p>
+  static Vector spread(const Vector& column) {
+    return __builtin_shufflevector(column, column, p, p, p, p, 4 + p, 4 + p, 4 + p, 4 + p);
+  }
+};
+
+template <int K>
+void two_rows_forward(const float* l, Distance ld, int n, float* w) {
+  TwoRows::Row x[K];
+  TwoRows::Vector twice[K];
+#pragma GCC unroll 8
+  for (int c = 0; c < K; ++c) load(w + 4 * c, x[c]);
+#pragma GCC unroll 8
+  for (int c = 0; c < K; ++c) {
+#pragma GCC unroll 8
+    for (int r = c + 1; r < K; ++r) x[r] -= l[c * ld + r] * x[c];
+    store(x[c], w + 4 * c);
+    twice[c] = __builtin_shufflevector(x[c], x[c], 0, 1, 2, 3, 0, 1, 2, 3);
+  }
+  for (int i = K; i < n; i += 8) {
+    TwoRows::Vector sum[4];
+#pragma GCC unroll 4
+    for (int p = 0; p < 4; ++p) sum[p] = TwoRows::from(w + 4 * (i + p));
+#pragma GCC unroll 8
+    for (int c = 0; c < K; ++c) {
+      TwoRows::Vector column;
+      load(l + c * ld + i, column);
+      sum[0] -= TwoRows::spread<0>(column) * twice[c];
+      sum[1] -= TwoRows::spread<1>(column) * twice[c];
+      sum[2] -= TwoRows::spread<2>(column) * twice[c];
+      sum[3] -= TwoRows::spread<3>(column) * twice[c];
+    }
+#pragma GCC unroll 4
+    for (int p = 0; p < 4; ++p) {
+      store(TwoRows::first(sum[p]), w + 4 * (i + p));
+      store(TwoRows::second(sum[p]), w + 4 * (i + p) + 16);
+    }
+  }
+}
+
+template <int K>
+void two_rows_back(const float* l, Distance ld, int n, float* w) {
+  TwoRows::Row x[K];
+  TwoRows::Vector sum[K] = {};
+  for (int i = K; i < n; i += 8) {
+    TwoRows::Vector value[4];
+#pragma GCC unroll 4
+    for (int p = 0; p < 4; ++p) value[p] = TwoRows::from(w + 4 * (i + p));
+#pragma GCC unroll 8
+    for (int c = 0; c < K; ++c) {
+      TwoRows::Vector column;
+      load(l + c * ld + i, column);
+      sum[c] += TwoRows::spread<0>(column) * value[0];
+      sum[c] += TwoRows::spread<1>(column) * value[1];
+      sum[c] += TwoRows::spread<2>(column) * value[2];
+      sum[c] += TwoRows::spread<3>(column) * value[3];
+    }
+  }
+#pragma GCC unroll 8
+  for (int c = 0; c < K; ++c) {
+    load(w + 4 * c, x[c]);
+    x[c] -= TwoRows::first(sum[c]) + TwoRows::second(sum[c]);
+  }
+#pragma GCC unroll 8
+  for (int c = K - 1; c >= 0; --c) {
+#pragma GCC unroll 8
+    for (int r = 0; r < c; ++r) x[r] -= l[r * ld + c] * x[c];
+    store(x[c], w + 4 * c);
+  }
+}
+
 // The dense steps by the width of their panel, less one.
 template <class Real>
 struct OfWidth {
@@ -261,10 +345,17 @@ struct OfWidth {
 };
 template <class Real, int... smaller>
 constexpr std::array<OfWidth<Real>, panel> of_widths(std::integer_sequence<int, smaller...>) {
-  return {
-      {{take_panel<smaller + 1, Real>, substitute_forward<smaller + 1, Real, Real>,
-        substitute_back<smaller + 1, Real, Real>, substitute_forward<smaller + 1, Four<Real>, Real>,
-        substitute_back<smaller + 1, Four<Real>, Real>}...}};
+  constexpr bool two_rows = std::is_same_v<Real, float>;
+  if constexpr (two_rows) {
+    return {{{take_panel<smaller + 1, Real>, substitute_forward<smaller + 1, Real, Real>,
+              substitute_back<smaller + 1, Real, Real>, two_rows_forward<smaller + 1>,
+              two_rows_back<smaller + 1>}...}};
+  } else {
+    return {{{take_panel<smaller + 1, Real>, substitute_forward<smaller + 1, Real, Real>,
+              substitute_back<smaller + 1, Real, Real>,
+              substitute_forward<smaller + 1, Four<Real>, Real>,
+              substitute_back<smaller + 1, Four<Real>, Real>}...}};
+  }
 }
 template <class Real>
 constexpr auto of_width = of_widths<Real>(std::make_integer_sequence<int, panel>());
@@ -338,8 +429,8 @@ void MultifrontalCholesky<Real>::find_fronts() {
     fronts_.push_back(front);
   }
   factor_.resize(factor_size + lanes<Real>);  // groups of rows below may begin anywhere
-  front_rows_.resize(4 * most_rows + lanes<Real>);
-  if constexpr (!std::is_same_v<Real, double>) rounded_.resize(pattern_.n);
+  front_rows_.resize(4 * (most_rows + lanes<Real>));
+  if constexpr (!std::is_same_v<Real, double>) rounded_.resize(4 * pattern_.n);
 }
 
 template <class Real>
@@ -502,7 +593,12 @@ void MultifrontalCholesky<Real>::solve_coordinates(Eigen::Matrix4Xd& rhs) {
   if constexpr (std::is_same_v<Real, double>) {
     substitute<4>(rhs.data());
   } else {
-    SpdSolver::solve_coordinates(rhs);
+    Eigen::Map<Eigen::Matrix4X<Real>> rounded(rounded_.data(), 4, pattern_.n);
+    const double largest = rhs.cwiseAbs().maxCoeff();
+    if (!(largest > 0)) return;
+    rounded = (rhs * (1 / largest)).template cast<Real>();
+    substitute<4>(rounded_.data());
+    rhs = largest * rounded.template cast<double>();
   }
 }
 
@@ -510,6 +606,12 @@ template <class Real>
 template <int width>
 void MultifrontalCholesky<Real>::substitute(Real* rhs) {
   using Steps = OfWidth<Real>;
+  using Row = std::conditional_t<width == 1, Real, Four<Real>>;
+  const auto row_at = [](const Real* first, int i) {
+    Row row;
+    load(first + width * i, row);
+    return row;
+  };
   constexpr auto forward = width == 1 ? &Steps::forward : &Steps::fours_forward,
                  back = width == 1 ? &Steps::back : &Steps::fours_back;
   Real* const w = front_rows_.data();
@@ -519,34 +621,31 @@ void MultifrontalCholesky<Real>::substitute(Real* rhs) {
         factor_.data() + front.factor_at + panel_at<Real>(front.rows, k),
         panel_ld<Real>(columns, rows), rows, w + width * k);
   };
+  // Counts are copied: stores of vectors might change anything else, as far as a compiler knows.
   for (const Front& front : fronts_) {  // L y = rhs
+    const int columns = front.columns, rows_below = front.below();
     const int* row = rows_.data() + front.rows_at;
-    Real* x = rhs + width * front.first_column;
-    std::copy_n(x, width * front.columns, w);
-    std::fill_n(w + width * front.columns, width * front.below(), Real{0});
-    for (int k = 0; k < front.columns; k += panel) take_panel_at(front, k, forward);
-    std::copy_n(w, width * front.columns, x);
-    const Real* below = w + width * front.columns;
-    for (int i = 0; i < front.below(); ++i) {
-      for (int c = 0; c < width; ++c) rhs[width * row[i] + c] += below[width * i + c];
-    }
+    Real* const x = rhs + width * front.first_column;
+    Real* const below = w + width * columns;
+    for (int i = 0; i < columns; ++i) store(row_at(x, i), w + width * i);
+    for (int i = 0; i < rows_below; ++i) store(Row{}, below + width * i);
+    for (int k = 0; k < columns; k += panel) take_panel_at(front, k, forward);
+    for (int i = 0; i < columns; ++i) store(row_at(w, i), x + width * i);
+    for (int i = 0; i < rows_below; ++i)
+      store(row_at(rhs, row[i]) + row_at(below, i), rhs + width * row[i]);
   }
-  for (std::size_t i = 0; i < pivots_.size(); ++i) {
-    for (int c = 0; c < width; ++c) rhs[width * i + c] /= pivots_[i];
-  }
+  for (int i = 0; i < pattern_.n; ++i) store(row_at(rhs, i) / pivots_[i], rhs + width * i);
   for (std::size_t f = fronts_.size(); f-- > 0;) {  // L^T x = D^-1 y
     const Front& front = fronts_[f];
+    const int columns = front.columns, rows_below = front.below();
     const int* row = rows_.data() + front.rows_at;
-    Real* x = rhs + width * front.first_column;
-    std::copy_n(x, width * front.columns, w);
-    Real* below = w + width * front.columns;
-    for (int i = 0; i < front.below(); ++i) {
-      for (int c = 0; c < width; ++c) below[width * i + c] = rhs[width * row[i] + c];
-    }
-    std::fill_n(below + width * front.below(), lanes<Real>, Real{0});
-    for (int k = (front.columns - 1) / panel * panel; k >= 0; k -= panel)
-      take_panel_at(front, k, back);
-    std::copy_n(w, width * front.columns, x);
+    Real* const x = rhs + width * front.first_column;
+    Real* const below = w + width * columns;
+    for (int i = 0; i < columns; ++i) store(row_at(x, i), w + width * i);
+    for (int i = 0; i < rows_below; ++i) store(row_at(rhs, row[i]), below + width * i);
+    for (int i = 0; i < lanes<Real>; ++i) store(Row{}, below + width * (rows_below + i));
+    for (int k = (columns - 1) / panel * panel; k >= 0; k -= panel) take_panel_at(front, k, back);
+    for (int i = 0; i < columns; ++i) store(row_at(w, i), x + width * i);
   }
 }
 

@@ -74,7 +74,7 @@ class MultifrontalCholesky final : public SpdSolver {
   std::vector<Real> updates_[2];   // the stacks
   std::vector<Real> pivots_;       // of L D L^T
   std::vector<Real> front_rows_;   // solve(): one number a row of a front, or four
-  std::vector<Real> rounded_;      // solve() in single precision: the right-hand side
+  std::vector<Real> rounded_;      // in single precision: the right-hand side, or four
   double nonzeros_ = 0, flops_ = 0;
 };
 
@@ -90,6 +90,8 @@ class MixedCholesky final : public SpdSolver {
   // In double precision if a pivot has too few digits in single precision.
   bool factor() override;
   void solve(double* rhs) override { solve_within(tightest, rhs); }
+  // Without refinement: in single precision where the pivots promise five digits.
+  void solve_coordinates(Eigen::Matrix4Xd& rhs) override;
   // Without a look at the residual where the pivots promise more than `tolerance`. In double
   // precision if refinement does not get there; false if the matrix is not positive definite then.
   bool solve_within(double tolerance, double* rhs) override;

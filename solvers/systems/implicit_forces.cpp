@@ -57,7 +57,7 @@ double longest_explicit_step(double stiffness, double mass) {
 }  // namespace
 
 ImplicitForces::ImplicitForces(const Problem& problem) : problem_(problem) {
-  VertexMatrix matrix(problem, stiff_pairs(problem), "multifrontal", 1);
+  VertexMatrix matrix(problem, stiff_pairs(problem), "multifrontal_mixed", 1);
   entries_.resize(matrix.pattern.entries());
   const auto adds_to = [&](double Entry::*part) {
     return [&, part](int a, int b, double k) {
