@@ -1,59 +1,120 @@
 #include "solvers/problem/forces.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <type_traits>
 
 namespace inextensible {
 namespace {
 
-// q -= scale W grad V of n stencils, the first of them s, at p.
-template <std::size_t n>
-void add_bending(const BendingStencil& s, const double* w, const double* p, double scale,
-                 double* q) {
-  double sum[3 * n] = {}, f[3 * n];
-  for (std::size_t role = 0; role < 4; ++role) {
-    const double* at = p + 3 * s.vertex[role];
-    for (std::size_t i = 0; i < 3 * n; ++i) sum[i] += s.coefficient[role] * at[i];
+using Four = double __attribute__((vector_size(32)));
+// n numbers that follow each other.
+template <int n>
+using Numbers = std::conditional_t<n == 4, Four, double>;
+template <int n>
+Numbers<n> numbers(const double* from) {
+  Numbers<n> all;
+  std::memcpy(&all, from, sizeof all);
+  return all;
+}
+
+// x, y and z of n vertices that follow each other, n = 1 or 4; of four in three vectors.
+template <int n>
+struct Vertices {
+  using Part = Numbers<n>;
+  static Vertices at(const double* from) {
+    return {numbers<n>(from), numbers<n>(from + n), numbers<n>(from + 2 * n)};
   }
+  void write(double* to) const {  // not the whole, which compilers copy by way of memory
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; ++i) std::memcpy(to + i * n, &part[i], sizeof(Part));
+  }
+  Part squared_norms() const {
+    if constexpr (n == 1) {
+      return part[0] * part[0] + part[1] * part[1] + part[2] * part[2];
+    } else {
+      const Four a = part[0] * part[0], b = part[1] * part[1], c = part[2] * part[2];
+      const Four ab_x = __builtin_shufflevector(a, b, 0, 3, 6, 6),
+                 ab_y = __builtin_shufflevector(a, b, 1, 4, 7, 7),
+                 ab_z = __builtin_shufflevector(a, b, 2, 5, 5, 5);
+      return __builtin_shufflevector(ab_x, c, 0, 1, 2, 5) +
+             __builtin_shufflevector(ab_y, c, 0, 1, 2, 6) +
+             __builtin_shufflevector(ab_z, c, 0, 1, 4, 7);
+    }
+  }
+  // this += factor times v, a factor each vertex.
+  void add(const Part& factor, const Vertices& v) {
+    if constexpr (n == 1) {
+      for (int i = 0; i < 3; ++i) part[i] += factor * v.part[i];
+    } else {
+      part[0] += __builtin_shufflevector(factor, factor, 0, 0, 0, 1) * v.part[0];
+      part[1] += __builtin_shufflevector(factor, factor, 1, 1, 2, 2) * v.part[1];
+      part[2] += __builtin_shufflevector(factor, factor, 2, 3, 3, 3) * v.part[2];
+    }
+  }
+
+  Part part[3];
+};
+
+double root(double x) { return std::sqrt(x); }
+Four root(const Four& x) {
+  Four roots;
+  for (int i = 0; i < 4; ++i) roots[i] = std::sqrt(x[i]);
+  return roots;
+}
+
+// Calls act.operator()<n>(i) for numbers i ... i + n - 1 of those from begin to end.
+template <class Act>
+void in_fours(std::size_t begin, std::size_t end, Act act) {
+  for (; begin + 4 <= end; begin += 4) act.template operator()<4>(begin);
+  for (; begin < end; ++begin) act.template operator()<1>(begin);
+}
+
+// q -= scale W grad V of `count` stencils of a run, the first of them s, at p. The vertices of one
+// role come after the other's: those of different roles overlap, and what a vector has written
+// another one would wait for.
+constexpr std::size_t most_at_once = 64;
+void add_bending(const BendingStencil& s, std::size_t count, const double* w, const double* p,
+                 double scale, double* q) {
+  double sums[3 * most_at_once];
+  in_fours(0, count, [&]<int n>(std::size_t k) {
+    Vertices<n> sum{};
+#pragma GCC unroll 4
+    for (std::size_t role = 0; role < 4; ++role) {
+      const auto at = Vertices<n>::at(p + 3 * (s.vertex[role] + k));
+#pragma GCC unroll 3
+      for (int i = 0; i < 3; ++i) sum.part[i] += s.coefficient[role] * at.part[i];
+    }
+    sum.write(sums + 3 * k);
+  });
   for (std::size_t role = 0; role < 4; ++role) {
     const double all = scale * s.stiffness * s.coefficient[role];
-    for (std::size_t i = 0; i < n; ++i)
-      f[3 * i] = f[3 * i + 1] = f[3 * i + 2] =
-          all * w[static_cast<std::size_t>(s.vertex[role]) + i];
-    double* at = q + 3 * s.vertex[role];
-    for (std::size_t i = 0; i < 3 * n; ++i) at[i] -= f[i] * sum[i];
+    in_fours(0, count, [&]<int n>(std::size_t k) {
+      double* to = q + 3 * (s.vertex[role] + k);
+      auto at = Vertices<n>::at(to);
+      at.add(-(all * numbers<n>(w + s.vertex[role] + k)), Vertices<n>::at(sums + 3 * k));
+      at.write(to);
+    });
   }
 }
 
 // q += scale W f of n springs, the first of them e, at p: f pulls b towards a with k (|d| - r).
-template <std::size_t n>
+template <int n>
 void add_springs(const Edge& e, const double* k, const double* r, const double* w, const double* p,
                  double scale, double* q) {
-  const double *pa = p + 3 * e.a, *pb = p + 3 * e.b;
-  double d[3 * n], fa[3 * n], fb[3 * n];
-  for (std::size_t i = 0; i < 3 * n; ++i) d[i] = pb[i] - pa[i];
-  for (std::size_t i = 0; i < n; ++i) {
-    const double d0 = d[3 * i], d1 = d[3 * i + 1], d2 = d[3 * i + 2];
-    const double length = std::sqrt(d0 * d0 + d1 * d1 + d2 * d2);
-    // A spring of length zero has no direction; its force is taken as zero.
-    const double f = length > 0 ? scale * k[i] * (1 - r[i] / length) : 0;
-    fa[3 * i] = fa[3 * i + 1] = fa[3 * i + 2] = f * w[static_cast<std::size_t>(e.a) + i];
-    fb[3 * i] = fb[3 * i + 1] = fb[3 * i + 2] = f * w[static_cast<std::size_t>(e.b) + i];
-  }
-  double *qa = q + 3 * e.a, *qb = q + 3 * e.b;
-  for (std::size_t i = 0; i < 3 * n; ++i) qa[i] += fa[i] * d[i];
-  for (std::size_t i = 0; i < 3 * n; ++i) qb[i] -= fb[i] * d[i];
-}
-
-// Calls add.operator()<n>(i) for stencils i ... i + n - 1 of one run (Problem::shear_runs).
-template <class Add>
-void for_each_group(const std::vector<std::size_t>& runs, Add add) {
-  std::size_t i = 0;
-  for (const std::size_t run : runs) {
-    const std::size_t end = i + run;
-    for (; i + 8 <= end; i += 8) add.template operator()<8>(i);
-    for (; i + 4 <= end; i += 4) add.template operator()<4>(i);
-    for (; i < end; ++i) add.template operator()<1>(i);
-  }
+  constexpr double no_length = 1e-200;  // m; such a spring has no direction, and d takes its force
+  auto d = Vertices<n>::at(p + 3 * e.b), a = Vertices<n>::at(p + 3 * e.a);
+  for (int i = 0; i < 3; ++i) d.part[i] -= a.part[i];
+  const auto length = root(d.squared_norms());
+  const auto f = scale * numbers<n>(k) *
+                 (1 - numbers<n>(r) / (length > no_length ? length : no_length + 0 * length));
+  a = Vertices<n>::at(q + 3 * e.a);
+  a.add(f * numbers<n>(w + e.a), d);
+  a.write(q + 3 * e.a);
+  auto b = Vertices<n>::at(q + 3 * e.b);
+  b.add(-(f * numbers<n>(w + e.b)), d);
+  b.write(q + 3 * e.b);
 }
 
 void add_accelerations(const Problem& problem, const Positions& x, const Positions& shear_at,
@@ -62,16 +123,25 @@ void add_accelerations(const Problem& problem, const Positions& x, const Positio
   y.colwise() += fall;
   const double* w = problem.inverse_mass().data();
   if (const Springs* shear = problem.shear()) {
-    for_each_group(problem.shear_runs(), [&]<std::size_t n>(std::size_t i) {
-      add_springs<n>(shear->edges[i], &shear->stiffness[i], &shear->rest_length[i], w,
-                     shear_at.data(), scale, y.data());
-    });
+    std::size_t begin = 0;
+    for (const std::size_t run : problem.shear_runs()) {
+      in_fours(begin, begin + run, [&]<int n>(std::size_t i) {
+        add_springs<n>(shear->edges[i], &shear->stiffness[i], &shear->rest_length[i], w,
+                       shear_at.data(), scale, y.data());
+      });
+      begin += run;
+    }
     work.spring_evaluations += static_cast<std::int64_t>(shear->edges.size());
   }
   const Bending& bending = problem.bending();
-  for_each_group(problem.bending_runs(), [&]<std::size_t n>(std::size_t i) {
-    add_bending<n>(bending[i], w, x.data(), scale, y.data());
-  });
+  std::size_t begin = 0;
+  for (const std::size_t run : problem.bending_runs()) {
+    for (const std::size_t end = begin + run; begin < end;) {
+      const std::size_t count = std::min(most_at_once, end - begin);
+      add_bending(bending[begin], count, w, x.data(), scale, y.data());
+      begin += count;
+    }
+  }
   work.spring_evaluations += static_cast<std::int64_t>(bending.size());
 }
 
