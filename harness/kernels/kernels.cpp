@@ -2,11 +2,13 @@
 // step can be explained from its parts. Names: piece/solver/scene:n. Matrices are those of a cloth
 // in mid-drape (above 150 vertices a side soon after its start) and a chain in mid-swing, at the
 // positions that a filter gets. Items are constrained edges, or vertices. collision_pass and the
-// solves include a copy of their input, a few percent. floor_ratio compares a pass of strain
-// limiting over all edges with the square root and the division that an edge costs at least;
-// of_peak and of_bandwidth compare flops of a factorization with those of a dense product, and
-// bytes of the factor, read twice by a solve, with the bandwidth at which an array of the factor's
-// size is read (the library prints such ratios with "/s" behind them).
+// solves include a copy of their input, a few percent. A pass of strain limiting has its time and
+// its bytes a visit of an edge, with the least time that arithmetic (a division) and memory (the
+// bytes, at the bandwidth of an array as large as all that a pass reads) leave, and floor_ratio,
+// its time over the larger of these two; of_peak and of_bandwidth compare flops of a factorization
+// with those of a dense product, and bytes of the factor, read twice by a solve, with the bandwidth
+// at which an array of the factor's size is read (the library prints such ratios with "/s" behind
+// them).
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -31,8 +33,6 @@
 #include "solvers/registry.h"
 #include "solvers/systems/constraint_system.h"
 
-extern "C" double cblas_dasum(int n, const double* x, int stride);  // OpenBLAS
-
 namespace harness::kernels {
 namespace {
 
@@ -53,23 +53,27 @@ double shortest(int rounds, Work work) {
   return best;
 }
 
-// s for a square root and a division, independent of others, in single precision and the
-// first-level cache: no pass that corrects every edge is faster. Measured at the first call.
-double sqrt_div_seconds() {
+// s for a division, independent of others, in single precision and the first-level cache: no pass
+// that corrects every edge is faster. Measured at the first call.
+double division_seconds() {
   constexpr int passes = 20, edges = 1024;
   static const double all = shortest(1000, [] {
     std::array<float, edges> lengths{};
     lengths.fill(1.2F);
     for (int i = 0; i < passes; ++i) {
-      for (float& q : lengths) q = 1.5F - 0.5F / std::sqrt(q);
+      for (float& q : lengths) q = 1.5F - 0.5F / q;
       benchmark::DoNotOptimize(lengths);
     }
   });
   return all / (passes * edges);
 }
 
+// In as many sums as hide how long an addition takes.
 void read_all(const Eigen::VectorXd& data) {
-  benchmark::DoNotOptimize(cblas_dasum(static_cast<int>(data.size()), data.data(), 1));
+  constexpr int sums = 32;
+  Eigen::Array<double, sums, 1> sum = Eigen::Array<double, sums, 1>::Zero();
+  for (Eigen::Index i = 0; i < data.size(); i += sums) sum += data.segment<sums>(i).array();
+  benchmark::DoNotOptimize(sum);
 }
 
 // Bytes a second at which an array of that size is read over and over: of the cache that it fits
@@ -187,10 +191,18 @@ std::unique_ptr<VelocityFilter> filter(const Problem& problem, const std::string
 
 // Passes over a cloth stretched by a fifth, so that nearly every edge is corrected. A call that may
 // make no pass costs the checks, the refusal and the clock: its time is subtracted.
-void strain_pass(benchmark::State& state, const std::string& method, int n) {
+// own: bytes that are read of an edge; coordinate: of a coordinate of a vertex; transfers: how
+// often a visit reads or writes one.
+struct Traffic {
+  std::string method;
+  std::size_t own, coordinate, transfers;
+};
+
+void strain_pass(benchmark::State& state, const Traffic& traffic, int n) {
   const Moment& m = moment("drape", n);
   constexpr int passes = 10;
-  const auto some = filter(m.problem(), method, passes), none = filter(m.problem(), method, 0);
+  const auto some = filter(m.problem(), traffic.method, passes),
+             none = filter(m.problem(), traffic.method, 0);
   const Positions stretched = 1.2 * m.x0;
   Positions x = stretched;
   WorkCounters work;
@@ -207,7 +219,14 @@ void strain_pass(benchmark::State& state, const std::string& method, int n) {
   }
   const int visits = passes * m.problem().constraints();
   per_item(state, visits);
-  state.counters["floor_ratio"] = average(total / visits / sqrt_div_seconds());
+  const auto bytes = static_cast<double>(traffic.own + traffic.transfers * traffic.coordinate),
+             all = static_cast<double>(traffic.own * m.problem().constraints() +
+                                       3 * traffic.coordinate * m.problem().vertices());
+  const double arithmetic = division_seconds(), memory = bytes / read_bandwidth(all);
+  state.counters["bytes_per_edge"] = bytes;
+  state.counters["least_by_arithmetic"] = arithmetic;
+  state.counters["least_by_memory"] = memory;
+  state.counters["floor_ratio"] = average(total / visits / std::max(arithmetic, memory));
   state.counters["corrected"] = average(static_cast<double>(work.edge_projections) / visits);
 }
 
@@ -281,9 +300,13 @@ void register_steps(const std::string& scene, int n) {
   add("strain_check" + at, edge_pass, false, scene, n);
   if (scene != "drape") return;
   add("collision_pass" + at, vertex_pass, true, scene, n);
-  for (const std::string method :
-       {"gauss_seidel", "gauss_seidel_colored", "jacobi", "yarn_projection"})
-    add("strain_pass/" + method + at, strain_pass, method, n)->UseManualTime();
+  // Own: vertices, rest length, masses and bounds; the edge at the base; the rows of a yarn.
+  for (const Traffic& traffic : std::initializer_list<Traffic>{
+           {"gauss_seidel", 2 * sizeof(int) + 4 * sizeof(double), sizeof(double), 12},
+           {"gauss_seidel_colored", 4 * sizeof(float), sizeof(float), 12},
+           {"jacobi", 4 * sizeof(float), sizeof(float), 24},
+           {"yarn_projection", 3 * 7 * sizeof(double), sizeof(double), 12}})
+    add("strain_pass/" + traffic.method + at, strain_pass, traffic, n)->UseManualTime();
 }
 
 void register_linear_systems(const std::string& scene, int n, const std::vector<std::string>& spd) {
