@@ -98,14 +98,10 @@ StrainPasses::StrainPasses(const Problem& problem, const StrainBand& band,
   const double low = std::min(band.low - 1, 0.0), high = std::max(band.high - 1, 0.0);
   const double room = std::min(strain_rounding, most_of_band * high);
   const auto square = [](double target) { return target * target - 1; };
-  bounds_ = {static_cast<float>(low + room),
-             static_cast<float>(high - room),
-             static_cast<float>(std::max(square(band.target_low), low + 2 * room)),
-             static_cast<float>(std::min(square(band.target_high), high - 2 * room)),
-             0,
-             0,
-             0,
-             0};
+  bounds_.middle = static_cast<float>(0.5 * (low + high));
+  bounds_.half = static_cast<float>(0.5 * (high - low) - room);
+  bounds_.target_low = static_cast<float>(std::max(square(band.target_low), low + 2 * room));
+  bounds_.target_high = static_cast<float>(std::min(square(band.target_high), high - 2 * room));
   bounds_.low_scale = 1 / (1 + bounds_.target_low);
   bounds_.low_offset = bounds_.target_low * bounds_.low_scale;
   bounds_.high_scale = 1 / (1 + bounds_.target_high);
@@ -255,21 +251,44 @@ std::int64_t StrainPasses::pass(Displacements& to) {
   return corrected;
 }
 
+// Copies, which stores of vectors cannot change, as far as a compiler knows.
+struct StrainPasses::Arrays {
+  Arrays(const StrainPasses& all, Displacements& changed)
+      : groups(all.groups_.data()),
+        middles(all.middles_.data()),
+        constants(all.constants_.data()),
+        constants_of(all.constants_of_.data()),
+        bounds(all.bounds_) {
+    for (int axis = 0; axis < 3; ++axis) {
+      u[axis] = all.u_.col(axis).data();
+      to[axis] = changed.col(axis).data();
+    }
+  }
+  const Group* groups;
+  const Middle* middles;
+  const Constants* constants;
+  const int* constants_of;
+  Bounds bounds;
+  const float* u[3];
+  float* to[3];
+};
+
 template <bool middle, class Ends>
 std::int64_t StrainPasses::pass(const ColoredEdges::Block& block, Displacements& to) {
   std::int64_t corrected = 0;
-  const Columns columns{u_, to};
+  const Arrays arrays(*this, to);
   for (int k = block.first; k < block.first + block.count; k += width) {
     const Ends ends{edges_.a().data() + k, edges_.b().data() + k};
     if (passes_ == 0) measure<middle>(k, ends);
     for (int first = 0; first < width; first += at_once)
-      corrected += correct<middle>(k / width, first, ends, columns);
+      corrected += correct<middle>(k / width, first, ends, arrays);
   }
   return corrected;
 }
 
 template <bool middle, class Ends>
 [[gnu::always_inline]] inline void StrainPasses::measure(int k, const Ends& ends) {
+  using simd::where;
   using std::experimental::static_simd_cast;
   Group& group = groups_[k / width];
   const auto edge = [&](const Places& x, int axis) {
@@ -286,7 +305,10 @@ template <bool middle, class Ends>
       static_simd_cast<float>(m).copy_to(middles_[k / width].m[axis], element_aligned);
     }
   }
-  const Lanes<double> strain = square * lanes(inverse_square_.data() + k) - 1;
+  const Lanes<double> q = square * lanes(inverse_square_.data() + k);
+  Lanes<double> strain = q - 1;
+  // What is no edge, or has no length and so no direction, is within the limit.
+  where(q == 0, strain) = double{bounds_.middle};
   static_simd_cast<float>(strain).copy_to(group.strain, element_aligned);
 }
 
@@ -302,36 +324,38 @@ template <class Real>
 // `middle`: along the edges in the middle of the step.
 template <bool middle, class Ends>
 [[gnu::always_inline]] inline int StrainPasses::correct(int k, int first, const Ends& ends,
-                                                        const Columns& columns) {
+                                                        const Arrays& arrays) {
   using simd::where;
   using Some = Lanes<float, at_once>;
   const auto some = [first](const float* from) { return lanes<at_once>(from + first); };
   const auto a = ends.a + first, b = ends.b + first;
-  const Group& group = groups_[k];
-  const Constants& constants = constants_[constants_of_[k]];
+  const Bounds& bounds = arrays.bounds;
+  const Group& group = arrays.groups[k];
+  const Constants& constants = arrays.constants[arrays.constants_of[k]];
   Some e[3], d[3];
   Some growth = 0;
   const Some scale = some(constants.inverse_square);
   for (int axis = 0; axis < 3; ++axis) {
-    const float* u = columns.u[axis];
+    const float* u = arrays.u[axis];
     const Some base = some(group.d[axis]);
     e[axis] = ends.template read<at_once>(u, b) - ends.template read<at_once>(u, a);
     d[axis] = base + e[axis];
     growth += (base + d[axis]) * e[axis];
   }
   const Some strain = some(group.strain) + growth * scale;
-  const auto violated = !(strain >= bounds_.low && strain <= bounds_.high) && strain != -1;
+  const Some off = strain - bounds.middle;
+  const auto violated = abs(off) > bounds.half;
   const int violations = popcount(violated);
   if (violations == 0) return 0;
-  const auto short_of = strain < bounds_.low;
+  const auto short_of = off < 0;
   Some s;
   if constexpr (middle) {
-    Some strained = strain - bounds_.target_high;
-    where(short_of, strained) = strain - bounds_.target_low;
+    Some strained = strain - bounds.target_high;
+    where(short_of, strained) = strain - bounds.target_low;
     Some m[3];
     Some q = 0, p = 0, r = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      m[axis] = some(middles_[k].m[axis]) + 0.5F * e[axis];
+      m[axis] = some(arrays.middles[k].m[axis]) + 0.5F * e[axis];
       q += d[axis] * d[axis];
       p += d[axis] * m[axis];
       r += m[axis] * m[axis];
@@ -343,15 +367,15 @@ template <bool middle, class Ends>
     for (int axis = 0; axis < 3; ++axis) where(aligned, d[axis]) = m[axis];
     s = excess_along(strained, along * scale, square * scale);
   } else {
-    Some scaled = bounds_.high_scale, offset = bounds_.high_offset;
-    where(short_of, scaled) = bounds_.low_scale;
-    where(short_of, offset) = bounds_.low_offset;
+    Some scaled = bounds.high_scale, offset = bounds.high_offset;
+    where(short_of, scaled) = bounds.low_scale;
+    where(short_of, offset) = bounds.low_offset;
     s = excess(Some(strain * scaled - offset));
   }
   where(!violated, s) = 0;
   const Some sa = some(constants.share_a) * s, sb = some(constants.share_b) * s;
   for (int axis = 0; axis < 3; ++axis) {
-    float* to = columns.to[axis];
+    float* to = arrays.to[axis];
     ends.write(ends.template read<at_once>(to, a) + sa * d[axis], to, a);
     ends.write(ends.template read<at_once>(to, b) - sb * d[axis], to, b);
   }

@@ -132,9 +132,10 @@ class StrainPasses {
     alignas(64) float inverse_square[width];  // 1 / l^2; 0: no edge
     float share_a[width], share_b[width];
   };
-  struct Bounds {  // of q - 1
-    float low, high, target_low, target_high;
-    // q - 1 over a target's q is 1 + q * scale - offset.
+  struct Bounds {        // of q - 1
+    float middle, half;  // of the band
+    float target_low, target_high;
+    // A strain over a target's q is 1 + strain * scale - offset.
     float low_scale, low_offset, high_scale, high_offset;
   };
   using Places = ColoredEdges::Places;
@@ -148,18 +149,9 @@ class StrainPasses {
   std::int64_t pass(const ColoredEdges::Block& block, Displacements& to);
   template <bool middle, class Ends>
   void measure(int k, const Ends& ends);
-  struct Columns {  // of u_ and what is corrected
-    Columns(const Displacements& from, Displacements& changed) {
-      for (int axis = 0; axis < 3; ++axis) {
-        u[axis] = from.col(axis).data();
-        to[axis] = changed.col(axis).data();
-      }
-    }
-    const float* u[3];
-    float* to[3];
-  };
+  struct Arrays;  // what a pass reads and moves
   template <bool middle, class Ends>
-  int correct(int k, int first, const Ends& ends, const Columns& columns);
+  static int correct(int k, int first, const Ends& ends, const Arrays& arrays);
 
   Contacts* contacts_ = nullptr;
   ColoredEdges edges_;
