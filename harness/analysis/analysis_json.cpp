@@ -1,7 +1,3 @@
-#include <algorithm>
-#include <functional>
-#include <map>
-#include <tuple>
 
 #include "harness/analysis/findings.h"
 #include "harness/base/table.h"

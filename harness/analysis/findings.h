@@ -1,9 +1,6 @@
 // The answers of result files in words, as the terminal, pages and figures print them.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "harness/analysis/plane.h"
 
 namespace harness::analysis {

@@ -1,7 +1,6 @@
 #include "harness/analysis/measured_point.h"
 
 #include <iomanip>
-#include <sstream>
 
 #include "harness/base/text.h"
 #include "harness/points/point_json.h"

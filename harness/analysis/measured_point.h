@@ -1,16 +1,6 @@
 // What analysis works on: the runs and contestants of a result file; and numbers in words.
 #pragma once
 
-#include <array>
-#include <cmath>
-#include <functional>
-#include <map>
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "harness/base/statistics.h"
 #include "harness/points/point.h"
 

@@ -1,7 +1,5 @@
 #include "harness/analysis/plane.h"
 
-#include <stdexcept>
-
 #include "harness/points/suite.h"
 
 namespace harness::analysis {

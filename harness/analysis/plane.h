@@ -2,11 +2,6 @@
 // no edge is strained by more than a limit and the motion error is within a level.
 #pragma once
 
-#include <array>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "harness/analysis/measured_point.h"
 
 namespace harness::analysis {

@@ -1,20 +1,10 @@
 // Figures that theory knows of a scene: what a run makes of them, and what they should be.
 #pragma once
 
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <optional>
 #include <ostream>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "harness/base/journal.h"
-#include "harness/base/pattern.h"
 #include "harness/points/schema.h"
-#include "harness/scenes/scene.h"
 
 namespace harness {
 

@@ -1,16 +1,8 @@
 // The known answers of configs/answers.json, and what solvers make of them.
-#include <cmath>
-#include <functional>
-#include <map>
 #include <numeric>
 
 #include "harness/answers/answer.h"
 #include "harness/base/child_process.h"
-#include "harness/base/clock.h"
-#include "harness/base/errors.h"
-#include "harness/base/fields.h"
-#include "harness/base/files.h"
-#include "harness/base/json.h"
 #include "harness/base/table.h"
 #include "harness/base/text.h"
 #include "harness/judge/drive.h"
@@ -19,7 +11,6 @@
 #include "harness/scenes/fabrics.h"
 #include "harness/scenes/meshes.h"
 #include "solvers/problem/edge_constraints.h"
-#include "solvers/registry.h"
 
 namespace harness {
 

@@ -1,8 +1,5 @@
 // What known answers read off runs: distances, turns, swings, tensions, falls, angles and shadows.
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
-#include <map>
 #include <numbers>
 
 #include "harness/answers/answer.h"

@@ -1,10 +1,4 @@
 // C4, C7 to C10, C12 to C14 and C16: what works at all, residuals, shapes and strains.
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "harness/base/errors.h"
 #include "harness/base/text.h"

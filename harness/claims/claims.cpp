@@ -4,7 +4,6 @@
 #include <set>
 
 #include "harness/analysis/plane.h"
-#include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/text.h"
 #include "harness/points/result_file.h"

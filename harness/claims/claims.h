@@ -1,17 +1,9 @@
 // The claims C1 to C16 of Goldenthal et al. 2007, each decided from result files by a stated rule.
 #pragma once
 
-#include <functional>
-#include <map>
-#include <nlohmann/json.hpp>
-#include <optional>
 #include <ostream>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "harness/analysis/measured_point.h"
-#include "harness/base/statistics.h"
 
 namespace harness::claims {
 

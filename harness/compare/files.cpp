@@ -1,7 +1,6 @@
 // Reads gates, results and baselines; writes baselines.
 #include "harness/base/files.h"
 
-#include "harness/base/json.h"
 #include "harness/base/text.h"
 #include "harness/compare/comparison.h"
 #include "harness/points/context.h"

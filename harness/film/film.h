@@ -3,14 +3,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <array>
-#include <cstdint>
-#include <functional>
-#include <string>
-#include <vector>
 
 #include "harness/points/contestant.h"
-#include "harness/scenes/scene.h"
 #include "solvers/problem/triangle_collider.h"
 
 namespace harness {

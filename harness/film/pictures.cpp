@@ -1,6 +1,4 @@
-#include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <future>
 #include <mutex>
 #include <numbers>
@@ -8,10 +6,8 @@
 #include <set>
 #include <thread>
 
-#include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
-#include "harness/base/json.h"
 #include "harness/film/film.h"
 #include "harness/judge/mechanics.h"
 

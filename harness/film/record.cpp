@@ -1,15 +1,10 @@
-#include <algorithm>
-#include <cmath>
 
-#include "harness/base/clock.h"
-#include "harness/base/interrupt.h"
 #include "harness/base/text.h"
 #include "harness/film/film.h"
 #include "harness/judge/drive.h"
 #include "harness/judge/energy.h"
 #include "harness/judge/mechanics.h"
 #include "harness/run/measure_point.h"
-#include "solvers/registry.h"
 
 namespace harness {
 namespace {

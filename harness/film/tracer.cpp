@@ -1,12 +1,7 @@
 #include <embree3/rtcore.h>
 
-#include <algorithm>
-#include <cmath>
 #include <initializer_list>
-#include <limits>
-#include <memory>
 #include <numeric>
-#include <stdexcept>
 #include <type_traits>
 
 #include "harness/film/film.h"

@@ -3,8 +3,6 @@
 // a bulge or a corner of the body leaves through a face that looks a similar way, and is none.
 #pragma once
 
-#include <vector>
-
 #include "harness/scenes/scene.h"
 #include "solvers/problem/triangle_collider.h"
 

@@ -2,9 +2,6 @@
 #pragma once
 
 #include <concepts>
-#include <functional>
-#include <limits>
-#include <optional>
 
 #include "harness/base/clock.h"
 #include "harness/base/interrupt.h"

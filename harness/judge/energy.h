@@ -9,9 +9,6 @@
 // every step is zero.
 #pragma once
 
-#include <optional>
-#include <string>
-
 #include "harness/points/measures.h"
 #include "harness/scenes/scene.h"
 #include "solvers/methods/backend.h"

@@ -1,16 +1,11 @@
 // The harness judges: strain, energy, symmetry and errors, from positions and off the clock.
 #pragma once
 
-#include <memory>
-#include <optional>
-
 #include "harness/judge/crossings.h"
 #include "harness/judge/energy.h"
 #include "harness/judge/reference.h"
 #include "harness/points/point.h"
-#include "harness/scenes/scene.h"
 #include "solvers/problem/edge_constraints.h"
-#include "solvers/stepping/stepper.h"
 
 namespace harness {
 

@@ -2,8 +2,6 @@
 // energy and shape are computed for the judge, the hard cases and `bench check`.
 #pragma once
 
-#include <vector>
-
 #include "harness/scenes/scene.h"
 
 namespace harness {

@@ -1,7 +1,6 @@
 #include "harness/judge/reference.h"
 
 #include <algorithm>
-#include <filesystem>
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"

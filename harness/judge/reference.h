@@ -3,12 +3,6 @@
 // stored as JSON (schema inextensible-reference/2) and is never a contestant.
 #pragma once
 
-#include <map>
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
-
 #include "harness/base/npz.h"
 #include "harness/points/measures.h"
 #include "harness/scenes/scene.h"

@@ -3,15 +3,11 @@
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 
-#include <algorithm>
-
-#include "harness/base/clock.h"
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
 #include "harness/judge/drive.h"
 #include "harness/judge/mechanics.h"
 #include "harness/scenes/pendulum.h"
-#include "solvers/registry.h"
 
 namespace harness {
 

@@ -3,12 +3,6 @@
 // computation that was stopped goes on with the next one.
 #pragma once
 
-#include <functional>
-#include <map>
-#include <optional>
-#include <string>
-#include <utility>
-
 #include "harness/base/journal.h"
 #include "harness/judge/reference.h"
 

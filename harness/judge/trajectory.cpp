@@ -1,7 +1,5 @@
 #include "harness/judge/trajectory.h"
 
-#include <cstring>
-#include <filesystem>
 #include <numeric>
 
 #include "harness/base/errors.h"

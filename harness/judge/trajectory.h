@@ -1,12 +1,7 @@
 // Trajectories that other programs have made of a scene, judged like runs of a solver.
 #pragma once
 
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "harness/judge/reference.h"
-#include "harness/scenes/scene.h"
 #include "solvers/methods/backend.h"
 
 namespace harness {

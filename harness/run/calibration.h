@@ -1,12 +1,7 @@
 // The search for the stiffness of springs that keeps a strain limit.
 #pragma once
 
-#include <functional>
-#include <optional>
-#include <string>
-
 #include "harness/points/point.h"
-#include "harness/scenes/scene.h"
 
 namespace harness {
 

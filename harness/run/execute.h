@@ -2,9 +2,6 @@
 // journal. All runners wrap run_point(); tests replace it with formulas.
 #pragma once
 
-#include <functional>
-#include <memory>
-
 #include "harness/base/journal.h"
 #include "harness/run/measure_point.h"
 

@@ -1,9 +1,4 @@
-#include <algorithm>
-#include <map>
-#include <span>
 
-#include "harness/base/errors.h"
-#include "harness/run/measure_point.h"
 #include "harness/run/sweep.h"
 
 namespace harness {

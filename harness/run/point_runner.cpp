@@ -1,7 +1,6 @@
 #include "harness/run/point_runner.h"
 
 #include "harness/base/child_process.h"
-#include "harness/base/clock.h"
 #include "harness/base/statistics.h"
 #include "harness/base/text.h"
 #include "harness/judge/drive.h"

@@ -1,11 +1,7 @@
 // The run of one point's scene by its solver, once or several times.
 #pragma once
 
-#include <memory>
-#include <vector>
-
 #include "harness/run/measure_point.h"
-#include "solvers/registry.h"
 
 namespace harness {
 

@@ -4,15 +4,8 @@
 // Departure: distances shrink, for budgets of a few dozen trials.
 #pragma once
 
-#include <functional>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "harness/points/suite.h"
 #include "harness/points/tuned.h"
 #include "harness/run/sweep.h"
-#include "solvers/methods/backend.h"
 
 namespace harness {
 

@@ -2,15 +2,11 @@
 // initial state; it knows nothing of solvers.
 #pragma once
 
-#include <array>
-#include <functional>
 #include <map>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "solvers/problem/problem.h"
 

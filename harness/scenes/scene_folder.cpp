@@ -3,8 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <stdexcept>
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"

@@ -2,7 +2,6 @@
 // to it.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
 

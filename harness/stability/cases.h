@@ -2,7 +2,6 @@
 #pragma once
 
 #include <random>
-#include <vector>
 
 #include "harness/scenes/meshes.h"
 #include "harness/stability/trial.h"

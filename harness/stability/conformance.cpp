@@ -1,26 +1,11 @@
 #include "harness/stability/conformance.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <limits>
-#include <map>
-#include <random>
-#include <sstream>
-#include <stdexcept>
-#include <utility>
-#include <variant>
-
 #include "harness/base/child_process.h"
 #include "harness/base/text.h"
-#include "harness/judge/drive.h"
-#include "harness/judge/mechanics.h"
-#include "harness/judge/reference.h"
 #include "harness/scenes/pendulum.h"
 #include "harness/stability/cases.h"
 #include "harness/stability/stability.h"
 #include "solvers/problem/forces.h"
-#include "solvers/registry.h"
 
 namespace harness {
 

@@ -1,10 +1,6 @@
 // How hard cases should end, and where methods are known to end otherwise: configs/hard_cases.json.
-#include <algorithm>
-#include <cmath>
-#include <utility>
 
 #include "harness/base/files.h"
-#include "harness/base/json.h"
 #include "harness/points/schema.h"
 #include "harness/stability/hard_case.h"
 

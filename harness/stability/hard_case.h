@@ -2,14 +2,7 @@
 // outcome that theory or literature predicts for every solver.
 #pragma once
 
-#include <functional>
-#include <map>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "harness/stability/trial.h"
-#include "solvers/registry.h"
 
 namespace harness {
 

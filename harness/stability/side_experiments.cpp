@@ -1,14 +1,10 @@
 // What the stability sweep measures beside the matrix of hard cases.
 #include <Eigen/SPQRSupport>
-#include <cmath>
-#include <random>
 
 #include "harness/base/text.h"
-#include "harness/judge/mechanics.h"
 #include "harness/stability/cases.h"
 #include "harness/stability/stability.h"
 #include "solvers/problem/forces.h"
-#include "solvers/registry.h"
 
 namespace harness {
 

@@ -1,8 +1,5 @@
 #include "harness/stability/stability.h"
 
-#include "harness/base/errors.h"
-#include "harness/points/contestant.h"
-#include "harness/points/point_json.h"
 #include "harness/points/schema.h"
 #include "harness/stability/cases.h"
 

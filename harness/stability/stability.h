@@ -2,18 +2,10 @@
 // degrees of freedom that constraints leave, and the same frames from fast projection and ICD.
 #pragma once
 
-#include <cstdint>
-#include <functional>
-#include <nlohmann/json.hpp>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "harness/base/journal.h"
 #include "harness/base/pattern.h"
 #include "harness/judge/reference.h"
 #include "harness/stability/hard_case.h"
-#include "harness/stability/trial.h"
 
 namespace harness {
 

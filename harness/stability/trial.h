@@ -2,20 +2,10 @@
 // question is whether the solver survives, and whether it keeps its promises.
 #pragma once
 
-#include <functional>
-#include <map>
-#include <nlohmann/json.hpp>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "harness/base/fields.h"
 #include "harness/judge/drive.h"
 #include "harness/judge/energy.h"
 #include "harness/judge/mechanics.h"
 #include "harness/points/point.h"
-#include "harness/scenes/scene.h"
-#include "solvers/problem/obstacle.h"
 
 namespace harness {
 

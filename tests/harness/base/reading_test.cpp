@@ -1,5 +1,4 @@
 // Input from outside: no text makes a document unreadable, and no expression runs for ever.
-#include <gtest/gtest.h>
 
 #include "harness/base/json.h"
 #include "harness/base/pattern.h"

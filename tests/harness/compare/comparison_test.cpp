@@ -1,8 +1,6 @@
 // The rank test against scipy's numbers; changes, gates and reports.
 #include "harness/compare/comparison.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "harness/base/statistics.h"

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <cmath>
 #include <fstream>
 #include <random>
 

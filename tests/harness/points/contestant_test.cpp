@@ -1,8 +1,6 @@
 // One solver several times in a run, tuned settings, and the noise between two equal contestants.
 #include "harness/points/contestant.h"
 
-#include <gtest/gtest.h>
-
 #include <fstream>
 
 #include "harness/points/result_file.h"

@@ -1,8 +1,6 @@
 // Files that are written or committed fit their schemas, configs/*.schema.json.
 #include "harness/points/result_file.h"
 
-#include <gtest/gtest.h>
-
 #include "harness/analysis/findings.h"
 #include "harness/base/table.h"
 #include "harness/compare/comparison.h"

@@ -1,8 +1,6 @@
 // The search for settings, with objectives whose optimum is known, and with a fake clock.
 #include "harness/run/tune.h"
 
-#include <gtest/gtest.h>
-
 #include <fstream>
 #include <random>
 #include <set>

@@ -2,7 +2,6 @@
 // algebra; and what some of them promise beyond that.
 
 #include <Eigen/Dense>
-#include <limits>
 #include <unsupported/Eigen/KroneckerProduct>
 
 #include "solvers/linear/multifrontal_cholesky.h"

@@ -2,7 +2,6 @@
 // a vertex on a turntable, and a rope round a post.
 
 #include <Eigen/Geometry>
-#include <cmath>
 #include <numbers>
 
 #include "solvers/problem/triangle_collider.h"
