@@ -67,33 +67,4 @@ struct Plane {
 // In the order of runs.
 std::vector<Plane> planes_of(const Runs& runs);
 
-// ---- Budgets: the tightest strain limit, and its error, within a frame budget ----
-
-inline constexpr double frame_rate = 60;  // frames a second
-
-// A method's best run within a budget: the tightest strain limit with a motion error of at most the
-// headline's, then the least error; without one, the least error at the loosest limit.
-struct Reach {
-  double strain_limit, error;  // error: not-a-number if it is not known
-  double frame_seconds;        // 99th percentile
-  bool right;                  // error at most the headline's
-  Point point;
-};
-
-struct Budgeted {
-  std::string row;                            // an unranked contestant's is its solver's
-  std::vector<std::optional<Reach>> reached;  // one for each budget; none: no run is that fast
-};
-
-// One scene and size. Rows: tightest strain limit at the largest budget first.
-struct BudgetTable {
-  std::string scene;
-  int vertices = 0;
-  std::vector<double> budgets;  // s a frame
-  std::vector<Budgeted> rows;
-};
-
-// Runs with a step controller do not take part.
-std::vector<BudgetTable> budget_tables(const Runs& runs, const std::vector<double>& budgets);
-
 }  // namespace harness::analysis

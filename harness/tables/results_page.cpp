@@ -283,15 +283,6 @@ void print_sources(std::ostream& out, const std::vector<NamedResult>& results) {
   print_markdown(out, table);
 }
 
-// "0.1 %, error 1.2 %"; in parentheses if the error exceeds the headline's.
-std::string reach_text(const std::optional<Reach>& reach) {
-  if (!reach) return "-";
-  const std::string text =
-      percent(reach->strain_limit) + ", error " +
-      (std::isfinite(reach->error) ? number_text(100 * reach->error, 2) + " %" : "not known");
-  return reach->right ? text : "(" + text + ")";
-}
-
 }  // namespace
 
 Table outcomes_in(const json& document) {
@@ -378,27 +369,6 @@ void print_results_page(std::ostream& out, const std::vector<NamedResult>& resul
   print_sources(out, all);
 } catch (const json::exception& error) {
   throw UsageError(std::string("a result file is incomplete: ") + error.what());
-}
-
-void print_budgets(std::ostream& out, const std::vector<BudgetTable>& places) {
-  for (const BudgetTable& place : places) {
-    Table table{{"method"}};
-    for (const double budget : place.budgets)
-      table.head.push_back(number_text(1e3 * budget) + " ms a frame");
-    std::string none;
-    for (const Budgeted& row : place.rows) {
-      if (std::ranges::none_of(row.reached, [](const auto& reach) { return reach.has_value(); })) {
-        append(none, quoted(row.row));
-        continue;
-      }
-      table.rows.push_back({row.row});
-      for (const auto& reach : row.reached) table.rows.back().push_back(reach_text(reach));
-    }
-    out << "### " << scene_words(place.scene) << ", " << place.vertices << " vertices\n\n";
-    print_markdown(out, table);
-    if (!none.empty()) out << "\nNo run is that fast: " << none << ".\n";
-    out << '\n';
-  }
 }
 
 }  // namespace harness
