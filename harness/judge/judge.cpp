@@ -115,12 +115,6 @@ void Judge::sample(const Positions& filtered, const State& state) {
   if (problem.collider()) append_strains(problem, state.x, delivered_);
   kinetic_sum_ += inextensible::kinetic_energy(problem, state.v);
   ++samples_;
-  for (const auto& mirror : scene_.mirrors) {
-    const Eigen::Matrix3d reflect =
-        Eigen::Matrix3d::Identity() - 2 * mirror.normal * mirror.normal.transpose();
-    const Positions off = reflect * state.x - state.x(Eigen::all, mirror.image);
-    raise(running_.symmetry_defect, off.colwise().norm().maxCoeff() / scene_.size);
-  }
 }
 
 Measures Judge::finish() {

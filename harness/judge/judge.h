@@ -1,4 +1,4 @@
-// The harness judges: strain, energy, symmetry and errors, from positions and off the clock.
+// The harness judges: strain, energy and errors, from positions and off the clock.
 #pragma once
 
 #include "harness/judge/crossings.h"

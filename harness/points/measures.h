@@ -43,7 +43,6 @@ struct Measures {
   double energy_drift = unknown;
   double energy_gain = unknown, energy_gain_time = unknown;
   double energy_rise = unknown;
-  double symmetry_defect = unknown;
   std::string reference;
   double trajectory = unknown, trajectory_mean = unknown, trajectory_max = unknown;
   double gap = unknown;
@@ -89,8 +88,6 @@ inline constexpr std::tuple measure_fields{
     field("energy_rise", &Measures::energy_rise, "weight times size",
           "sum of all rises of E between means over 0.01 s, where energy can only fall",
           error_or_null),
-    field("symmetry_defect", &Measures::symmetry_defect, "scene's size",
-          "largest distance to the mirror image", error_or_null),
     field("reference", &Measures::reference, "",
           "name of the reference in results/references; null: there is none", error_or_null),
     field("trajectory", &Measures::trajectory, "scene's size",

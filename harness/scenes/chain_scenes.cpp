@@ -31,12 +31,8 @@ Scene build_taut_row(const SceneParameters& p) {
   Draft row = vertex_row(p);
   const int n = whole(p);
   const double span = p.at("length") * p.at("stretch");
-  Scene::Mirror left_right{{1, 0, 0}, {}};
-  for (int i = 0; i < n; ++i) {
+  for (int i = 0; i < n; ++i)
     row.scene.start.x(0, i) = 0.5 * span * (2 * i - (n - 1)) / (n - 1);
-    left_right.image.push_back(n - 1 - i);
-  }
-  row.scene.mirrors.push_back(std::move(left_right));
   return released(std::move(row), {0, n - 1});
 }
 
@@ -172,7 +168,6 @@ Positions whirling(const SceneParameters& p, double time) {
 
 Scene build_whirling_chain(const SceneParameters& p) {
   Draft chain = vertex_row(p);
-  chain.scene.mirrors.clear();  // it leaves every plane
   inextensible::State& start = chain.scene.start;
   start.x = whirling(p, 0);
   start.v.row(2) = -whirling_rate(p) * start.x.row(0);

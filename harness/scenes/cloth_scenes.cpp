@@ -58,7 +58,6 @@ void place_unevenly(Scene& scene, const SceneParameters& p, double y) {
     return at;
   };
   lay(scene, curve(2, 0.7), curve(1.5, 2.1), y, value_or_zero(p, "off_axis"));
-  scene.mirrors.clear();
 }
 
 // Above a polygonal sphere, centred at the origin, if that has a radius.
@@ -87,18 +86,16 @@ Scene build_drape(const SceneParameters& p) {
 // Pinned at two corners of one edge, which is straight at full length between them.
 Scene build_patch(const SceneParameters& p) {
   Draft cloth = vertex_square(p, 0);
-  cloth.scene.mirrors.pop_back();  // the pins break front to back
-  const std::vector<int> pins = {cloth.scene.corners[0], cloth.scene.corners[1]};
-  return released(std::move(cloth), pins);
+  return released(std::move(cloth), {0, whole(p) - 1});
 }
 
 constexpr double above_the_table = 1e-6;  // m, as nothing may start in an obstacle
 
-// A fabric in air that swings down from two corners, in waves, which leave no symmetry.
+// A fabric in air that swings down from two corners, in waves.
 Scene build_curtain(const SceneParameters& p) {
   Draft cloth = vertex_square(p, 0);
   place_unevenly(cloth.scene, p, 0);
-  cloth.parts.pinned = {cloth.scene.corners[0], cloth.scene.corners[1]};
+  cloth.parts.pinned = {0, whole(p) - 1};
   return finished(std::move(cloth));
 }
 
@@ -120,7 +117,6 @@ Scene build_block(const SceneParameters& p) {
   }
   cloth.parts.collider =
       std::make_shared<const inextensible::TriangleCollider>(std::move(box), p.at("friction"));
-  cloth.scene.mirrors.erase(cloth.scene.mirrors.begin());  // x is where it goes
   return finished(std::move(cloth));
 }
 
@@ -144,10 +140,9 @@ Scene build_hung_patch(const SceneParameters& p) {
     const double below = x.z() + 0.5 * side;
     x << x.x(), -below * std::cos(tilt), below * std::sin(tilt);
   }
-  cloth.parts.pinned = {scene.corners[0], scene.corners[1]};
   const int n = whole(p);
+  cloth.parts.pinned = {0, n - 1};
   scene.marks = {{"top_row", n / 2, 0}, {"lower_edge", (n - 1) * n + n / 2, -side}};
-  scene.mirrors.pop_back();
   scene.staggered = false;  // its rest is compared, and not the way there
   return finished(std::move(cloth));
 }

@@ -27,13 +27,6 @@ struct Scene {
   inextensible::State start;
   double duration = 1;  // s
   double size = 1;      // m, what errors are divided by
-  // A plane (through the origin, unit normal) that mirrors the scene onto itself, and each vertex's
-  // mirror image. For the chain it is the plane of its motion, and each vertex its own image.
-  struct Mirror {
-    Eigen::Vector3d normal;
-    std::vector<int> image;
-  };
-  std::vector<Mirror> mirrors;
   bool conserves_energy = false;  // nothing dissipates: energy drift is an error
   // How far total energy may rise above the start's, over weight times size and the kinetic energy
   // at the start: enough to lift the whole by 5 % of its size. Runs that blow up gain ten times as
@@ -49,7 +42,6 @@ struct Scene {
     double height;  // m, at which it would hang if nothing stretched
   };
   std::vector<Mark> marks;
-  std::vector<int> corners;                   // of a cloth, for statistics of its shape
   std::vector<std::array<int, 3>> triangles;  // that cover it, all with the same side outwards
 };
 

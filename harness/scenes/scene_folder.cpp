@@ -70,7 +70,6 @@ json document_of(const Scene& scene) {
                 {"edge", pairs_of(problem.edges())},
                 {"rest_length", problem.rest_length()},
                 {"triangles", scene.triangles},
-                {"corners", scene.corners},
                 {"implicit", problem.implicit_forces()},
                 {"contact_inside", problem.contact_inside()},
                 {"pins_follow_body", problem.pins_follow_body()},
@@ -92,8 +91,6 @@ json document_of(const Scene& scene) {
     document["drag"].push_back(problem.drag(i));
   for (const Scene::Mark& mark : scene.marks)
     document["marks"].push_back({mark.name, mark.vertex, mark.height});
-  for (const Scene::Mirror& mirror : scene.mirrors)
-    document["mirrors"].push_back({numbers_of(mirror.normal), mirror.image});
   if (problem.body_motion())
     document["body_poses"] = poses_of(problem.body_motion(), scene.duration);
   return document;
@@ -161,15 +158,10 @@ Scene scene_of(const json& document, const std::string& folder) {
       "energy_bound", moves ? std::numeric_limits<double>::infinity() : scene.energy_bound);
   scene.size = document.value("size", scene.size);
   scene.triangles = document.value("triangles", none).get<std::vector<std::array<int, 3>>>();
-  scene.corners = document.value("corners", none).get<std::vector<int>>();
   scene.conserves_energy = document.value("conserves_energy", false);
   scene.staggered = document.value("staggered", true);
   for (const json& mark : document.value("marks", none))
     scene.marks.push_back({mark.at(0), mark.at(1), mark.at(2)});
-  for (const json& mirror : document.value("mirrors", none)) {
-    read(mirror.at(0), scene.mirrors.emplace_back().normal, "mirrors");
-    mirror.at(1).get_to(scene.mirrors.back().image);
-  }
   Scene made = finished(std::move(draft));
   inextensible::check_state(*made.problem, made.start);
   return made;

@@ -40,7 +40,6 @@ TEST(SceneFolder, EverySceneReadsBackToTheLastBit) {
     EXPECT_EQ(copy.problem->pinned(), scene.problem->pinned());
     EXPECT_EQ(copy.size, scene.size);
     EXPECT_EQ(copy.energy_bound, scene.energy_bound);
-    EXPECT_EQ(copy.mirrors.size(), scene.mirrors.size());
     const auto [state, passes] = moved(scene);
     const auto [state_again, passes_again] = moved(copy);
     if (scene.problem->body_motion()) {  // poses are interpolated
