@@ -5,8 +5,6 @@
 
 namespace harness::analysis {
 
-using nlohmann::json;
-
 static json ratio_json(const std::optional<Ratio>& ratio) {
   if (!ratio) return nullptr;
   const bool known = ratio->known();

@@ -27,6 +27,6 @@ std::string title_of(const Plane& plane);
 std::string span_of_errors(const std::vector<Plane>& planes);
 
 // JSON of schema inextensible-analysis/1, for `bench show --json` and figures.
-nlohmann::json analysis_of(const Runs& runs);
+json analysis_of(const Runs& runs);
 
 }  // namespace harness::analysis

@@ -7,8 +7,6 @@
 
 namespace harness::analysis {
 
-using nlohmann::json;
-
 Point::Point(const json& document, double noise)
     : result_(std::make_shared<PointResult>(point_of(document))),
       id_(document.at("id")),

@@ -10,7 +10,7 @@ namespace harness::analysis {
 class Point {
  public:
   // noise: of the file's A/A pair, see ratio_of_times.
-  explicit Point(const nlohmann::json& document, double noise = std::nan(""));
+  explicit Point(const json& document, double noise = std::nan(""));
 
   const PointResult& result() const { return *result_; }
   const PointSpec& spec() const { return result_->spec; }
@@ -64,7 +64,7 @@ struct ContestantRoles {
   std::map<std::string, Role> known;
 
   ContestantRoles() = default;
-  explicit ContestantRoles(const nlohmann::json& document);
+  explicit ContestantRoles(const json& document);
   Role of(const std::string& contestant) const;
 };
 
@@ -74,7 +74,7 @@ struct Runs {
   ContestantRoles roles;
   std::vector<double> levels;  // any_motion, then loose to tight, down to the sweep's finest one
 
-  Runs(const nlohmann::json& document);
+  Runs(const json& document);
 };
 
 // The items by their key, in the order in which keys first appear.

@@ -6,8 +6,6 @@
 
 namespace harness::claims {
 
-using nlohmann::json;
-
 namespace {
 
 // Over sampled steps with a second iteration; in others the first residual is the last one, too.

@@ -10,8 +10,6 @@
 
 namespace harness::claims {
 
-using nlohmann::json;
-
 static void keep_faster(Curve& curve, double x, const Point& point) {
   const auto [place, added] = curve.try_emplace(x, point);
   if (!added && point.seconds() < place->second.seconds()) place->second = point;
@@ -151,8 +149,6 @@ Verdict at_levels(const std::function<Verdict(double level)>& judge) {
 
 namespace harness {
 namespace {
-
-using nlohmann::json;
 
 // configs/claims.json has their words and rules.
 const std::map<std::string, claims::Judge*> judges{{"C1", claims::chain_time_over_strain},

@@ -35,7 +35,7 @@ struct Export : SceneOptions {
     if (!std::filesystem::create_directory(partial, error))
       throw FileError(out, "make folder", error.message());
     try {
-      nlohmann::json said = about(*type, parameters);
+      json said = about(*type, parameters);
       if (reference) said["reference"] = "reference.npz";
       write_scene(partial, type->build(parameters), said);
     } catch (const std::invalid_argument& impossible) {  // parameters that make no scene
@@ -131,7 +131,7 @@ struct JudgeVerb {
     spec.strain_limit = limit > 0 ? limit : 0.1;
     const std::string label = name + " (time as reported)";
     try {
-      const inextensible::Backend rows[] = {playback(name.c_str(), label.c_str(), trajectory)};
+      const Backend rows[] = {playback(name.c_str(), label.c_str(), trajectory)};
       inextensible::add_backends(rows);
     } catch (const std::invalid_argument& error) {
       throw UsageError(std::string("--name: ") + error.what());
@@ -149,7 +149,7 @@ struct JudgeVerb {
       sweep.limits = {point.spec.strain_limit};
       sweep.resolutions = {spec.resolution};
       sweep.coarsest = sweep.finest = spec.step;
-      nlohmann::json context = machine_context();
+      json context = machine_context();
       context["timed"] = seconds > 0;
       context["selection"] = {{"solver", ""}, {"filter", ""}, {"exclude", ""}};
       const auto document = result_document(context, suite, typed, true, {point});

@@ -54,8 +54,8 @@ json metrics() {
 }
 
 const std::vector<List> lists{
-    list("solvers", inextensible::backends,
-         [](const inextensible::Backend& b) {
+    list("solvers", backends,
+         [](const Backend& b) {
            return json{{"name", b.name},
                        {"label", b.label},
                        {"summary", b.summary},

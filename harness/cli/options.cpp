@@ -135,7 +135,7 @@ std::vector<std::string> profiles() { return {"quick", "default", "pairs", "pape
 
 std::optional<Pattern> solver_pattern(const std::string& text, const Contestants& contestants) {
   if (text.empty()) return std::nullopt;
-  std::vector<std::string> names = names_of(inextensible::backends());
+  std::vector<std::string> names = names_of(backends());
   for (const Contestant& c : contestants) {
     if (!c.own_name()) names.push_back(c.name);
   }
@@ -249,8 +249,7 @@ Suite load_suite(const SweepOptions& given) {
   if (options.finest_error > 0) suite.finest_error = options.finest_error;
   if (options.seed >= 0) suite.seed = static_cast<std::uint64_t>(options.seed);
   // A solver that is not a contestant takes part only if named in full.
-  if (const auto* backend = inextensible::find_backend(options.solver);
-      backend && !backend->contestant) {
+  if (const auto* backend = find_backend(options.solver); backend && !backend->contestant) {
     for (SweepSpec& sweep : suite.sweeps) sweep.contestants = {{options.solver, options.solver}};
   }
   Contestants left = contestants_of(suite);

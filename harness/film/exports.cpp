@@ -12,9 +12,9 @@ namespace {
 struct Part {
   std::string name;  // of its files
   std::vector<std::array<int, 3>> triangles;
-  std::vector<inextensible::Edge> edges;
+  std::vector<Edge> edges;
   bool stays;  // does not move: one frame is enough
-  std::function<inextensible::Positions(std::size_t frame)> at;
+  std::function<Positions(std::size_t frame)> at;
 
   std::string obj_file(std::size_t frame) const {
     char number[24] = "";
@@ -51,7 +51,7 @@ std::string pc2_bytes(const Part& part, std::size_t frames) {
   append(bytes, 1.0F);
   append(bytes, static_cast<std::int32_t>(frames));
   for (std::size_t i = 0; i < frames; ++i) {
-    const inextensible::Positions x = part.at(i);
+    const Positions x = part.at(i);
     for (Eigen::Index k = 0; k < x.size(); ++k) append(bytes, static_cast<float>(x(k)));
   }
   return bytes;

@@ -9,16 +9,12 @@
 namespace harness {
 namespace {
 
-using inextensible::State;
-
 // The settings given, and for springs the stiffness that a sweep would find.
-inextensible::Settings calibrated(const FilmSpec& spec, const Contestant& contestant, double limit,
-                                  double step) {
-  const inextensible::Backend& backend = *inextensible::find_backend(contestant.solver);
+Settings calibrated(const FilmSpec& spec, const Contestant& contestant, double limit, double step) {
+  const Backend& backend = *find_backend(contestant.solver);
   const int size = static_cast<int>(spec.parameters.at(find_scene(spec.scene)->resolution));
-  inextensible::Settings settings = contestant.settings_for(size, limit);
-  if (backend.strain_control != inextensible::StrainControl::stiffness ||
-      settings.contains("stiffness"))
+  Settings settings = contestant.settings_for(size, limit);
+  if (backend.strain_control != StrainControl::stiffness || settings.contains("stiffness"))
     return settings;
   PointSpec point;
   point.sweep = "strain";
@@ -40,7 +36,7 @@ constexpr std::int64_t spare_tries = 1000, tries_per_step = 100;
 constexpr std::int64_t spare_iterations = 500'000, iterations_per_step = 10'000;
 
 // Why a run must give up after this many steps; "": it need not.
-std::string too_much_work(const inextensible::WorkCounters& work, long steps) {
+std::string too_much_work(const WorkCounters& work, long steps) {
   const std::int64_t tries = work.steps + work.rejected_steps;
   if (tries > spare_tries + tries_per_step * steps)
     return concat(tries, " tries of steps for ", steps, " steps");
@@ -64,10 +60,9 @@ FilmRun take_of(const FilmSpec& spec, const Scene& scene, const Contestant& cont
       std::max(1, static_cast<int>(std::ceil(1 / (rate * spec.step) - 1e-9)));
   take.step = take.smallest_step = 1 / (rate * steps_per_frame);
   const auto settings = calibrated(spec, contestant, limit, take.step);
-  const inextensible::Backend& backend = *inextensible::find_backend(contestant.solver);
+  const Backend& backend = *find_backend(contestant.solver);
   State state = start_of(scene, backend, take.step);
-  const auto stepper =
-      inextensible::make_stepper(contestant.solver, scene.problem, {limit, 1, settings, &state});
+  const auto stepper = make_stepper(contestant.solver, scene.problem, {limit, 1, settings, &state});
   EnergyRecord energy(scene, backend.velocities);
   Clock::time_point begin;
   const auto keep = [&](const State& at) {
@@ -106,11 +101,10 @@ FilmRun take_of(const FilmSpec& spec, const Scene& scene, const Contestant& cont
 
 }  // namespace
 
-inextensible::Positions body_at(const Recording& recording, std::size_t frame) {
-  const inextensible::Pose pose =
-      recording.body_poses.empty() ? inextensible::Pose{} : recording.body_poses.at(frame);
+Positions body_at(const Recording& recording, std::size_t frame) {
+  const Pose pose = recording.body_poses.empty() ? Pose{} : recording.body_poses.at(frame);
   const auto& vertices = recording.body.vertices;
-  inextensible::Positions x(3, vertices.size());
+  Positions x(3, vertices.size());
   std::transform(vertices.begin(), vertices.end(), x.colwise().begin(), pose);
   return x;
 }

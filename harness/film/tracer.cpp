@@ -11,7 +11,6 @@ namespace harness {
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
-using inextensible::Positions;
 
 namespace {
 

@@ -9,9 +9,6 @@
 
 namespace harness {
 
-using inextensible::Positions;
-using inextensible::State;
-
 namespace {
 
 constexpr double time_tolerance = 1e-9;  // s; states add up their steps
@@ -104,7 +101,7 @@ void Judge::look_at_marks(const State& state, double h) {
   if (!state.x.allFinite() || !state.v.allFinite()) return;
   for (const Scene::Mark& mark : scene_.marks)
     running_.sag[mark.name] += h * (mark.height - state.x(1, mark.vertex));
-  const inextensible::Problem& problem = *scene_.problem;
+  const Problem& problem = *scene_.problem;
   squared_speed_ += h * 2 * inextensible::kinetic_energy(problem, state.v) / problem.total_mass();
   marked_time_ += h;
 }
@@ -161,8 +158,8 @@ Measures Judge::finish() {
   return measures;
 }
 
-void ResidualProbe::iterate(const inextensible::EdgeConstraints& edges, int j,
-                            const inextensible::Positions& x, const Eigen::VectorXd& multipliers) {
+void ResidualProbe::iterate(const inextensible::EdgeConstraints& edges, int j, const Positions& x,
+                            const Eigen::VectorXd& multipliers) {
   if (!watching_) return;
   edges_ = &edges;
   iterations_ = j;
@@ -179,7 +176,7 @@ void ResidualProbe::iterate(const inextensible::EdgeConstraints& edges, int j,
 double ResidualProbe::mean_residual(const Iterate& at) const {
   Eigen::Matrix3Xd u(3, at.multipliers.size());
   edges_->gradient(at.x, u);
-  inextensible::Positions f = at.x - x0_;
+  Positions f = at.x - x0_;
   edges_->apply(u, -at.multipliers, f);
   return f.colwise().norm().mean();
 }

@@ -8,9 +8,6 @@
 
 namespace harness {
 
-using inextensible::Positions;
-using nlohmann::json;
-
 namespace {
 
 constexpr const char* reference_schema = "inextensible-reference/2";

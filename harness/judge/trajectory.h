@@ -2,7 +2,7 @@
 #pragma once
 
 #include "harness/judge/reference.h"
-#include "solvers/methods/backend.h"
+#include "harness/points/point.h"
 
 namespace harness {
 
@@ -17,8 +17,7 @@ struct Trajectory {
 Trajectory read_trajectory(const std::vector<std::string>& files, const Scene& scene, double rate);
 
 // A solver that repeats the frames, in steps of the interval.
-inextensible::Backend playback(const char* name, const char* label,
-                               std::shared_ptr<const Trajectory> trajectory);
+Backend playback(const char* name, const char* label, std::shared_ptr<const Trajectory> trajectory);
 
 // The worst places of a trajectory, for people: strain, depth in the body, moved pins, in lines.
 std::string worst_places(const Trajectory& trajectory, const Scene& scene);

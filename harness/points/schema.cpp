@@ -100,8 +100,7 @@ std::string schema_text(const std::string& name) { return schema_document(name).
 
 ordered_json legend(const Contestants& contestants) {
   ordered_json solvers = ordered_json::array(), statuses = ordered_json::array();
-  const auto entry = [](const inextensible::Backend& backend, const std::string& name,
-                        const std::string& label) {
+  const auto entry = [](const Backend& backend, const std::string& name, const std::string& label) {
     return ordered_json{{"name", name},
                         {"label", label},
                         {"family", backend.family},
@@ -111,7 +110,7 @@ ordered_json legend(const Contestants& contestants) {
                         {"stepper_origin", word_of(backend.stepper_origin)},
                         {"contestant", backend.contestant}};
   };
-  for (const auto& backend : inextensible::backends()) {
+  for (const auto& backend : backends()) {
     solvers.push_back(entry(backend, backend.name, backend.label));
     for (const Contestant& c : contestants) {
       if (c.own_name() || c.solver != backend.name) continue;

@@ -22,7 +22,7 @@ struct SweepSpec {
   bool every_step = false;  // the whole ladder instead of a search; step sweeps always do
   bool refine = true;       // also try rungs between the halvings
   SceneParameters scene_parameters;
-  std::map<std::string, inextensible::Settings> solver_options;  // a contestant's own go first
+  std::map<std::string, Settings> solver_options;  // a contestant's own go first
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(SweepSpec, sweep, scene, limits, resolutions,
                                                 scene_parameters, solver_options)

@@ -65,7 +65,7 @@ json tuned_document(const std::vector<TunedEntry>& entries) {
 }
 
 void tune(Contestants& all, const Tuned& tuned, const std::string& kind,
-          const std::map<std::string, inextensible::Settings>& given) {
+          const std::map<std::string, Settings>& given) {
   for (Contestant& contestant : all) {
     const TunedEntry* entry = contestant.own_name() ? tuned.find(kind, contestant.solver) : nullptr;
     if (!entry) continue;
@@ -100,7 +100,7 @@ std::vector<int> smaller_sizes(const std::string& scene) {
   return {};  // of the others there are no smaller references
 }
 
-json tuning_rule(const SweepSpec& scene, const inextensible::Backend& solver) {
+json tuning_rule(const SweepSpec& scene, const Backend& solver) {
   const auto type = find_scene(scene.scene);
   SceneParameters parameters = complete_parameters(*type, scene.scene_parameters);
   parameters.erase(type->resolution);
@@ -123,7 +123,7 @@ std::string rule_change(const TunedEntry& entry) {
   const auto scene = std::ranges::find(
       tuning_scenes(), entry.kind, [](const SweepSpec& s) { return find_scene(s.scene)->kind(); });
   if (scene == tuning_scenes().end()) return "the scene, " + entry.kind + ", no longer exists";
-  return difference(entry.rule, tuning_rule(*scene, *inextensible::find_backend(entry.solver)));
+  return difference(entry.rule, tuning_rule(*scene, *find_backend(entry.solver)));
 }
 
 Tuned read_tuned_up_to_date(const std::string& file) {

@@ -7,7 +7,6 @@
 namespace harness {
 namespace {
 
-using nlohmann::json;
 using End = ChildOutcome::End;
 
 PointResult lost(const PointSpec& spec, const ChildOutcome& outcome, double timeout) {

@@ -25,7 +25,7 @@ Runner isolated(const Runner& inner, double memory);
 // repetition. The journal must outlive the runner.
 Runner journaled(const Runner& inner, Journal& journal);
 
-void add_runs_of(const nlohmann::json& result, Journal& journal);
+void add_runs_of(const json& result, Journal& journal);
 void forget_failures(Journal& journal);
 std::size_t points_in(const Journal& journal);  // without repetitions
 

@@ -48,12 +48,12 @@ bool may_be_retaken(const Batch& batch) { return batch.ok() && batch.seconds < l
 struct Sampler {
   const PointResult& point;  // with the previous samples
   const PointRunner& runner;
-  const inextensible::Settings& settings;
+  const Settings& settings;
   // Reads of the clock would distort the time of a short step: its phases are timed in other runs.
   bool short_steps;
   const RunLimits& limits;
-  Samples& taken;                          // gets the samples
-  inextensible::PhaseSeconds phases = {};  // of the filter sample
+  Samples& taken;            // gets the samples
+  PhaseSeconds phases = {};  // of the filter sample
 
   // Takes a sample and returns the last run, perhaps a failed one. retaken: tries dropped before.
   Run add(int retaken) {
@@ -101,12 +101,12 @@ struct Sampler {
 };
 
 bool needs_stiffness(const PointRunner& runner) {
-  return runner.backend().strain_control == inextensible::StrainControl::stiffness &&
+  return runner.backend().strain_control == StrainControl::stiffness &&
          !runner.spec().settings.contains("stiffness");
 }
 
 // Adds the stiffness that springs need to the settings. False: none, and the point says why.
-bool calibrate(PointResult& point, const PointRunner& runner, inextensible::Settings& settings,
+bool calibrate(PointResult& point, const PointRunner& runner, Settings& settings,
                std::optional<double> guess) {
   const PointSpec& spec = point.spec;
   const auto begin = Clock::now();
@@ -133,7 +133,7 @@ bool calibrate(PointResult& point, const PointRunner& runner, inextensible::Sett
 
 // The judged run, and a first sample: the same run if it is long enough and undisturbed, and if the
 // judge saw no iterates, which are kept while the clock runs.
-void measure(PointResult& point, const PointRunner& runner, const inextensible::Settings& settings,
+void measure(PointResult& point, const PointRunner& runner, const Settings& settings,
              const RunLimits& limits) {
   const bool timed = limits.timed;
   const double before = timed ? quiet_probe().look() : 0;
@@ -160,7 +160,7 @@ void measure(PointResult& point, const PointRunner& runner, const inextensible::
 
 void take_sample(PointResult& more, const RunLimits& limits) {
   const PointResult& point = *limits.sample_of;
-  inextensible::Settings settings = point.spec.settings;
+  Settings settings = point.spec.settings;
   if (point.stiffness) settings["stiffness"] = *point.stiffness;
   const PointRunner runner(point.spec, limits);
   const bool short_steps = point.seconds() * point.spec.step < shortest_judged_step;
@@ -170,7 +170,7 @@ void take_sample(PointResult& more, const RunLimits& limits) {
 void look(PointResult& point, const RunLimits& limits) {
   const PointSpec& spec = point.spec;
   const PointRunner runner(spec, limits);
-  inextensible::Settings settings = spec.settings;
+  Settings settings = spec.settings;
   const bool springs = needs_stiffness(runner);
   if (springs)
     settings["stiffness"] =
@@ -187,7 +187,7 @@ void look(PointResult& point, const RunLimits& limits) {
     point.status = run.status;
     point.detail = run.detail;
   } else if (const double strain = run.measures.max_strain;
-             !springs && runner.backend().strain_control != inextensible::StrainControl::none &&
+             !springs && runner.backend().strain_control != StrainControl::none &&
              !(strain <= spec.strain_limit * (1 + 1e-9))) {
     point.status = PointStatus::strain_missed;
     point.detail = "strain " + told_apart(strain, spec.strain_limit);
@@ -197,7 +197,7 @@ void look(PointResult& point, const RunLimits& limits) {
 void run_whole(PointResult& point, const RunLimits& limits) {
   const PointRunner runner(point.spec, limits);
   point.steps_planned = runner.steps();
-  inextensible::Settings settings = point.spec.settings;
+  Settings settings = point.spec.settings;
   if (!needs_stiffness(runner) || calibrate(point, runner, settings, limits.stiffness_guess))
     measure(point, runner, settings, limits);
 }

@@ -81,8 +81,7 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
         base.solver = contestant.solver;
         base.seed = suite.seed;
         // Without a limit of its own a solver does the same at all of them.
-        const bool limited = inextensible::find_backend(contestant.solver)->strain_control !=
-                             inextensible::StrainControl::none;
+        const bool limited = find_backend(contestant.solver)->strain_control != StrainControl::none;
         for (const double limit : std::span(limits).first(limited ? limits.size() : 1)) {
           Search search;
           search.base = base;
@@ -115,8 +114,8 @@ Estimate estimate(const Suite& suite, const std::vector<Search>& searches) {
     const double duration = middle.base.scene_parameters.at("duration");
     const double run =
         std::min(duration * seconds_per_second(middle, step, suite.timeout), suite.timeout);
-    const bool calibrated = inextensible::find_backend(middle.base.solver)->strain_control ==
-                            inextensible::StrainControl::stiffness;
+    const bool calibrated =
+        find_backend(middle.base.solver)->strain_control == StrainControl::stiffness;
     for (const Search* search : members) {
       const auto rungs = static_cast<double>(search->ladder.size());
       const double tried = search->every_step ? rungs : std::min(rungs, runs_of_a_search);

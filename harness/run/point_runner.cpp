@@ -10,9 +10,6 @@
 
 namespace harness {
 
-using inextensible::State;
-using inextensible::Status;
-
 namespace {
 
 // A run that hardly moves keeps its strain and energy, as in single precision at tiny steps. Phase
@@ -30,7 +27,7 @@ constexpr double work_patience = 4;
 
 constexpr double rounding = 1e-6;  // of a frame: times add up their steps
 
-std::string refusal(const inextensible::StepResult& result, std::int64_t step, double time) {
+std::string refusal(const StepResult& result, std::int64_t step, double time) {
   const bool edge_known = result.worst_edge >= 0 && std::isfinite(result.worst_strain);
   return concat("step ", step, " (t = ", time, " s): ", inextensible::to_string(result.status),
                 ", ", result.detail, " after ", result.iterations, " iterations") +
@@ -73,7 +70,7 @@ PointRunner::PointRunner(const PointSpec& spec, const RunLimits& limits)
     : spec_(spec),
       limits_(limits),
       scene_(limits.scene ? *limits.scene : find_scene(spec.scene)->build(spec.scene_parameters)),
-      backend_(*inextensible::find_backend(spec.solver)),
+      backend_(*find_backend(spec.solver)),
       steps_(static_cast<int>(std::lround(scene_.duration / spec.step))),
       first_state_(start_of(scene_, backend_, spec.step)) {
   if (limits.references) reference_ = limits.references->find(spec.scene, spec.scene_parameters);
@@ -147,7 +144,7 @@ class PointRunner::Observed : public Observer {
     return options;
   }
 
-  bool keeps_strain() const { return backend_.strain_control != inextensible::StrainControl::none; }
+  bool keeps_strain() const { return backend_.strain_control != StrainControl::none; }
 
   // Whether the strain of a step ends the run.
   bool overstrained(double strain) {
@@ -207,7 +204,7 @@ class PointRunner::Observed : public Observer {
   const PointRunner& runner_;
   const PointSpec& spec_ = runner_.spec_;
   const RunLimits& limits_ = runner_.limits_;
-  const inextensible::Backend& backend_ = runner_.backend_;
+  const Backend& backend_ = runner_.backend_;
   double stop_at_;
   RunPart part_;
   Run& run_;
@@ -218,13 +215,13 @@ class PointRunner::Observed : public Observer {
   Clock::time_point begin_;
 };
 
-Run PointRunner::run(const inextensible::Settings& settings, bool judged, double stop_at,
-                     bool phases, RunPart part) const {
+Run PointRunner::run(const Settings& settings, bool judged, double stop_at, bool phases,
+                     RunPart part) const {
   Run run;
   const auto start = Clock::now();
   if (limits_.heartbeat) limits_.heartbeat->restart(static_cast<int>(part));
-  run.stepper = inextensible::make_stepper(
-      spec_.solver, scene_.problem, {spec_.strain_limit, spec_.seed, settings, &first_state_});
+  run.stepper = make_stepper(spec_.solver, scene_.problem,
+                             {spec_.strain_limit, spec_.seed, settings, &first_state_});
   run.setup_seconds = since(start);
   run.stepper->measure_phases(phases);
   State state = first_state_;

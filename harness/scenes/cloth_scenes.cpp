@@ -121,10 +121,10 @@ Scene build_block(const SceneParameters& p) {
 }
 
 // Coulomb friction slows it by mu g until it stands.
-inextensible::Positions block_at(const SceneParameters& p, double time) {
+Positions block_at(const SceneParameters& p, double time) {
   const double slowing = p.at("friction") * p.at("gravity"),
                sliding = std::min(time, p.at("speed") / slowing);
-  inextensible::Positions x = vertex_square(p, above_the_table).scene.start.x;
+  Positions x = vertex_square(p, above_the_table).scene.start.x;
   x.row(0).array() += sliding * (p.at("speed") - 0.5 * slowing * sliding);
   return x;
 }
@@ -227,7 +227,7 @@ Scene build_cusick(const SceneParameters& p) {
                                 " m under a disc of " + std::to_string(p.at("radius")) +
                                 " m: nothing hangs over");
   Draft draft = cloth_draft(disc_of(p), p);
-  inextensible::Positions& x = draft.scene.start.x;
+  Positions& x = draft.scene.start.x;
   for (Eigen::Index v = 0; v < x.cols(); ++v) x(1, v) = unevenness(p, x(0, v), x(2, v));
   draft.scene.size = 2 * p.at("radius");
   return finished(std::move(draft));

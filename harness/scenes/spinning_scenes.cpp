@@ -16,22 +16,20 @@ double turning_rate(const SceneParameters& p) { return 2 * std::numbers::pi * p.
 
 // Gives each vertex its velocity of the rotation about coordinate axis `axis`.
 Scene spinning(Draft draft, int axis, const SceneParameters& p) {
-  inextensible::State& start = draft.scene.start;
+  State& start = draft.scene.start;
   for (int i = 0; i < start.x.cols(); ++i)
     start.v.col(i) = turning_rate(p) * Vector3d::Unit(axis).cross(Vector3d(start.x.col(i)));
   return released(std::move(draft), {});
 }
 
 template <Scene (*build)(const SceneParameters&), int axis>
-inextensible::Positions turned_start(const SceneParameters& p, double time) {
+Positions turned_start(const SceneParameters& p, double time) {
   const Eigen::AngleAxisd turn(turning_rate(p) * time, Vector3d::Unit(axis));
   return turn.toRotationMatrix() * build(p).start.x;
 }
 
 // The square of rest lengths stays one, and its shear springs do nothing.
-Scene build_net(const SceneParameters& p) {
-  return spinning(vertex_square(p, 0), 1, p);
-}
+Scene build_net(const SceneParameters& p) { return spinning(vertex_square(p, 0), 1, p); }
 
 Scene build_baton(const SceneParameters& p) {
   Draft row = vertex_row(p);

@@ -2,8 +2,6 @@
 
 namespace harness::cases {
 
-using inextensible::Positions;
-
 Draft points(int n, double mass) {
   Draft mesh(n, {{"gravity", g}, {"duration", 0}});
   mesh.parts.mass.assign(n, mass);
@@ -73,7 +71,7 @@ Draft midpoint_cloth(int n) {
 
 // Springs promise no limit: a stiffness that would keep it in a fall of a few weights.
 Trial trial_of(Scene scene, double step, int steps, double strain_limit) {
-  const inextensible::Problem& problem = *scene.problem;
+  const Problem& problem = *scene.problem;
   Trial trial;
   trial.slack = strain_limit * problem.longest_rest_length();
   trial.step = step;

@@ -7,9 +7,7 @@
 namespace harness {
 namespace {
 
-using inextensible::Backend;
 using inextensible::Direction;
-using nlohmann::json;
 
 constexpr std::pair<const char*, Direction> directions[] = {
     {"start", Direction::start}, {"end", Direction::end},         {"current", Direction::current},
@@ -69,11 +67,11 @@ void add_expectations(std::vector<HardCase>& cases) {
 }
 
 Expectation HardCase::expectation(const std::string& solver) const {
-  const Backend& backend = *inextensible::find_backend(solver);
+  const Backend& backend = *find_backend(solver);
   Expectation expected =
       *std::ranges::find_if(expectations, [&](const Expectation& e) { return e.about(backend); });
-  if (backend.strain_control == inextensible::StrainControl::time_step &&
-      expected.outcome == Outcome::refused && !expected.other)
+  if (backend.strain_control == StrainControl::time_step && expected.outcome == Outcome::refused &&
+      !expected.other)
     expected.other = {Outcome::survived, "no limit is promised, so that it need not be noticed"};
   return expected;
 }

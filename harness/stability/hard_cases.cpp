@@ -1,4 +1,10 @@
 // The scenes of the hard cases; configs/hard_cases.json says how they are expected to end.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <memory>
+#include <random>
 
 #include "harness/base/errors.h"
 #include "harness/base/text.h"

@@ -90,14 +90,13 @@ SameFrame same_frame(const SameFrameScene& wanted, std::uint64_t seed) {
   SameFrame found{.scene = wanted};
   struct Run {
     const char* solver;
-    std::unique_ptr<inextensible::Stepper> stepper;
-    inextensible::State state;
+    std::unique_ptr<Stepper> stepper;
+    State state;
   };
   std::vector<Run> runs;
   for (const char* solver : {"fast_projection", "icd", "fast_projection"})
-    runs.push_back(
-        {solver, inextensible::make_stepper(solver, scene.problem, {wanted.strain_limit, seed, {}}),
-         scene.start});
+    runs.push_back({solver, make_stepper(solver, scene.problem, {wanted.strain_limit, seed, {}}),
+                    scene.start});
   std::mt19937_64 random(seed);
   cases::add_noise(runs[2].state.x, scene.problem->pinned(), wanted.moved * scene.size, random);
   const auto add_distance = [&](const Run& other, FrameDistances& series) {

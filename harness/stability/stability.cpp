@@ -34,7 +34,7 @@ ExpectationCounts StabilityOutcome::counts() const {
 StabilityPlan plan_stability(const std::string& profile, const std::optional<Pattern>& solver,
                              const std::optional<Pattern>& hard_case) {
   StabilityPlan plan{{}, hard_cases(profile)};
-  for (const auto& backend : inextensible::backends()) {
+  for (const auto& backend : backends()) {
     if (backend.contestant && (!solver || matches(*solver, backend.name)))
       plan.solvers.emplace_back(backend.name);
   }
@@ -76,7 +76,7 @@ StabilityOutcome run_stability(const StabilityPlan& plan, std::uint64_t seed,
       for (const std::string& solver : plan.solvers) {
         stop_if_asked();
         const std::string key = cell_key(c.name, solver);
-        const nlohmann::json result = events.once(key, [&] {
+        const json result = events.once(key, [&] {
           return to_json(run_isolated_trial(c.build, solver, seed, events.interrupted));
         });
         StabilityCell cell{&c, solver, trial_result_of(result), c.expectation(solver)};
@@ -116,7 +116,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LargestStep, scene, solver, step, failing_ste
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Freedom, mesh, vertices, constraints, rank, degrees_of_freedom)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FrameDistances, rms, largest)
 
-static void to_json(nlohmann::json& object, const SameFrame& frame) {
+static void to_json(json& object, const SameFrame& frame) {
   object = {{"scene", frame.scene.name()},
             {"side", frame.scene.side},
             {"strain_limit", frame.scene.strain_limit},
@@ -130,8 +130,6 @@ static void to_json(nlohmann::json& object, const SameFrame& frame) {
 }
 
 namespace {
-
-using nlohmann::json;
 
 json known_json() {
   json list = json::array();

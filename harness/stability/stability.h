@@ -116,7 +116,7 @@ inline std::string cell_key(const std::string& hard_case, const std::string& sol
 StabilityOutcome run_stability(const StabilityPlan& plan, std::uint64_t seed,
                                const RunEvents& events);
 
-nlohmann::json stability_document(nlohmann::json context, const StabilityOutcome& outcome,
-                                  std::uint64_t seed, const std::vector<std::string>& command);
+json stability_document(json context, const StabilityOutcome& outcome, std::uint64_t seed,
+                        const std::vector<std::string>& command);
 
 }  // namespace harness

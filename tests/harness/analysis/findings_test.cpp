@@ -101,7 +101,7 @@ TEST(Plane, TakesARunAtATighterLimitWhereThatIsFaster) {
 }
 
 TEST(Plane, ComparesWithTheMethodsThatThePaperHas) {
-  for (const auto& backend : inextensible::backends()) {
+  for (const auto& backend : backends()) {
     if (std::string(backend.name) != backend.method) continue;  // in another stepper
     const bool named = std::ranges::any_of(all_paper_methods, [&](const PaperMethod& method) {
       return method.name == std::string(backend.name);

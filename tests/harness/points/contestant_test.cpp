@@ -18,17 +18,17 @@ std::string write_tuned(const std::vector<TunedEntry>& entries) {
   return path;
 }
 
-TunedPlace place_at(int resolution, double limit, const inextensible::Settings& settings) {
+TunedPlace place_at(int resolution, double limit, const Settings& settings) {
   return {{resolution, limit, settings}, 12, 2, 0.005, 1, 0.01};
 }
 
-TunedEntry of_the_drape(const std::string& solver, const inextensible::Settings& settings) {
+TunedEntry of_the_drape(const std::string& solver, const Settings& settings) {
   const SweepSpec& scene = tuning_scenes().at(1);
   return {scene.scene,
           solver,
           40,
           {place_at(25, 0.02, settings)},
-          tuning_rule(scene, *inextensible::find_backend(solver)),
+          tuning_rule(scene, *find_backend(solver)),
           {{"date", ""}, {"cpu_model", ""}, {"commit", ""}}};
 }
 
@@ -61,12 +61,12 @@ TEST(Contestants, TakeEveryPartOfTheScene) {
   for (const char* scene : {"chain", "patch", "drape", "fabric_drape"}) {
     const auto type = find_scene(scene);
     const Scene built = type->build(complete_parameters(*type, {}));
-    for (const auto& backend : inextensible::backends()) {
+    for (const auto& backend : backends()) {
       const bool another = type->kind() == "chain" && *backend.same_on_chains;
       EXPECT_EQ(stands(scene, backend.name),
                 backend.contestant && !another && !part_not_taken(backend, *built.problem))
           << scene << ", " << backend.name;
-      EXPECT_TRUE(!*backend.same_on_chains || inextensible::find_backend(backend.same_on_chains));
+      EXPECT_TRUE(!*backend.same_on_chains || find_backend(backend.same_on_chains));
     }
   }
   EXPECT_TRUE(stands("drape", "soft_step", R"("solvers": ["soft_step"], )")) << "it is named";

@@ -16,8 +16,6 @@
 namespace harness {
 namespace {
 
-using inextensible::Positions;
-using inextensible::State;
 using inextensible::TriangleCollider;
 
 TEST(EveryScene, StartsAsItPromises) {
@@ -100,7 +98,7 @@ double angle_between(const Positions& x, const Positions& y) {
 // The angle of each step up to one second, from velocities of the start itself.
 std::vector<double> step_angles(const char* solver, double h) {
   const Scene scene = built_scene("spinning_net", {{"n", 6}});
-  const auto stepper = inextensible::make_stepper(solver, scene.problem, {1e-11});
+  const auto stepper = make_stepper(solver, scene.problem, {1e-11});
   State state = scene.start;
   std::vector<double> angles;
   for (int i = 0; (i + 0.5) * h < 1; ++i) {
@@ -158,8 +156,7 @@ Scene still_garment() {
 State after(const Scene& scene, double limit, double seconds) {
   const double h = 1.0 / 400;
   State state = scene.start;
-  const auto stepper =
-      inextensible::make_stepper("yarn_projection", scene.problem, {limit, 1, {}, &state});
+  const auto stepper = make_stepper("yarn_projection", scene.problem, {limit, 1, {}, &state});
   const DriveState driven = drive(*stepper, state, {h, std::lround(seconds / h), usual_halvings});
   EXPECT_EQ(driven.end, DriveState::End::arrived) << state.time << " s: " << driven.result.detail;
   return state;
@@ -188,7 +185,7 @@ TEST(Garment, SlipsPastHipsThatItsRimMayPass) {
 TEST(Garment, ItsBodyStartsAtRestWhereItIs) {
   const Scene scene = built_scene("garment", {{"n", around}});
   const auto& motion = scene.problem->body_motion();
-  const inextensible::Pose start = motion(0), soon = motion(1e-4);
+  const Pose start = motion(0), soon = motion(1e-4);
   EXPECT_EQ(start.turn, Eigen::Matrix3d::Identity());
   EXPECT_EQ(start.translation, Eigen::Vector3d::Zero().eval());
   EXPECT_LT((soon.turn - start.turn).norm() + (soon.translation - start.translation).norm(), 1e-9);
@@ -197,14 +194,13 @@ TEST(Garment, ItsBodyStartsAtRestWhereItIs) {
 
 TEST(Cape, HangsFromTheMovingBody) {
   const Scene scene = built_scene("cape", {{"n", 15}});
-  const inextensible::Problem& problem = *scene.problem;
+  const Problem& problem = *scene.problem;
   ASSERT_GT(problem.pinned().size(), 2U);
   ASSERT_LT(problem.pinned().size(), 15U) << "a part of the collar";
   State state = scene.start;
-  const auto stepper =
-      inextensible::make_stepper("fast_projection", scene.problem, {0.01, 1, {}, &state});
+  const auto stepper = make_stepper("fast_projection", scene.problem, {0.01, 1, {}, &state});
   while (state.time < 1.5) ASSERT_TRUE(stepper->advance(state, 1.0 / 120));
-  const inextensible::Pose pose = problem.body_motion()(state.time);
+  const Pose pose = problem.body_motion()(state.time);
   EXPECT_GT(pose.translation.norm(), 0.1);
   for (const int pin : problem.pinned())
     EXPECT_LT((state.x.col(pin) - pose(scene.start.x.col(pin))).norm(), 1e-9);
