@@ -26,18 +26,12 @@ Frames frames_of_npz(const std::string& path) {
   return frames;
 }
 
-// The header: "POINTCACHE2\0", version 1, points, first frame, frames per sample, samples.
 Frames frames_of_pc2(const std::string& path) {
   const std::string bytes = read_file(path, "point cache");
-  struct {
-    char name[12];
-    std::int32_t version, points;
-    float first, rate;
-    std::int32_t samples;
-  } head{};
-  static_assert(sizeof head == 32);
+  PointCacheHead head;
   std::memcpy(&head, bytes.data(), std::min(bytes.size(), sizeof head));
-  if (std::memcmp(head.name, "POINTCACHE2", 12) != 0 || head.points < 1 || head.samples < 1)
+  if (std::memcmp(head.name, PointCacheHead().name, sizeof head.name) != 0 || head.points < 1 ||
+      head.samples < 1)
     throw UsageError("'" + path + "' is not a point cache (.pc2)");
   const std::size_t floats = 3 * static_cast<std::size_t>(head.points);
   const auto samples = static_cast<std::size_t>(head.samples);

@@ -6,6 +6,15 @@
 
 namespace harness {
 
+// A point cache (.pc2): this, then the points of each sample in single precision.
+struct PointCacheHead {
+  char name[12] = "POINTCACHE2";
+  std::int32_t version = 1, points = 0;
+  float first_frame = 0, frames_per_sample = 1;
+  std::int32_t samples = 0;
+};
+static_assert(sizeof(PointCacheHead) == 32);
+
 struct Trajectory {
   double interval = 0;  // s between frames; the first is the scene's start
   Path frames;
