@@ -111,9 +111,8 @@ std::optional<Point> fastest_of(const std::vector<Point>& points, double level) 
 }
 
 const Entry* Cell::counting(std::size_t place) const {
-  for (const Entry& entry : entries) {
+  for (const Entry& entry : entries)
     if (entry.counts && place-- == 0) return &entry;
-  }
   return nullptr;
 }
 
@@ -155,9 +154,8 @@ std::optional<Ratio> Cell::lead_over(const Entry* other) const {
 }
 
 const Cell& Plane::cell(double limit, double level) const {
-  for (const Cell& cell : cells) {
+  for (const Cell& cell : cells)
     if (cell.strain_limit == limit && cell.level == level) return cell;
-  }
   throw std::out_of_range("no such cell");
 }
 

@@ -1,6 +1,6 @@
 // bench show, claims, results, report and plot: result files printed and drawn.
 
-#include "harness/analysis/findings.h"
+#include "harness/analysis/plane.h"
 #include "harness/answers/answer.h"
 #include "harness/claims/claims.h"
 #include "harness/cli/command.h"
@@ -21,9 +21,8 @@ std::vector<NamedResult> read_all(const Words& files, ResultKinds kinds) {
 
 std::vector<json> documents_of(const std::vector<NamedResult>& files, bool (*wanted)(const json&)) {
   std::vector<json> documents;
-  for (const NamedResult& file : files) {
+  for (const NamedResult& file : files)
     if (wanted(file.document)) documents.push_back(file.document);
-  }
   return documents;
 }
 

@@ -1,8 +1,7 @@
 // The strain-error grid and findings of invented times.
-#include "harness/analysis/findings.h"
-
 #include <gtest/gtest.h>
 
+#include "harness/analysis/plane.h"
 #include "harness/points/result_file.h"
 #include "support/invented_runs.h"
 

@@ -1,7 +1,7 @@
 // Files that are written or committed fit their schemas, configs/*.schema.json.
 #include "harness/points/result_file.h"
 
-#include "harness/analysis/findings.h"
+#include "harness/analysis/plane.h"
 #include "harness/base/table.h"
 #include "harness/compare/comparison.h"
 #include "harness/points/context.h"
@@ -70,12 +70,10 @@ TEST(Schemas, AreThoseOfCommittedFiles) {
       std::string schema = kind.substr(13, kind.find('/') - 13);
       if (schema == "bench") schema = "result";
       EXPECT_EQ(misfit(document, schema), "") << entry.path();
-      if (schema == "result") {
+      if (schema == "result")
         EXPECT_EQ(misfit(analysis::analysis_of(document), "analysis"), "") << entry.path();
-      }
-      if (schema == "suite") {
+      if (schema == "suite")
         EXPECT_NO_THROW(static_cast<void>(read_suite(entry.path()))) << entry.path();
-      }
     }
   }
   EXPECT_NO_THROW(static_cast<void>(read_tuned_up_to_date("tuned.json")));
