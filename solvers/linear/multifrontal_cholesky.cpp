@@ -171,11 +171,10 @@ bool take_panel(const Trapezoid<Real>& front, int k, const Real* bound, Real* pi
   }
   const Real* p = l + (front.own - k);
   const int all = padded<Real>(below);
-  if (k == 0) {
+  if (k == 0)
     subtract_product<K, true>(p, ld, pivots, below, all, front.update, all);
-  } else {
+  else
     subtract_product<K, false>(p, ld, pivots, below, all, front.update, all);
-  }
   return true;
 }
 
@@ -368,10 +367,9 @@ int MultifrontalCholesky<Real>::place_in(const Front& front, int row) const {
 template <class Real>
 void MultifrontalCholesky<Real>::link_fronts() {
   std::vector<int> front_of(pattern_.n);
-  for (std::size_t f = 0; f < fronts_.size(); ++f) {
+  for (std::size_t f = 0; f < fronts_.size(); ++f)
     for (int c = 0; c < fronts_[f].columns; ++c)
       front_of[fronts_[f].first_column + c] = static_cast<int>(f);
-  }
   std::vector<std::vector<int>> children(fronts_.size());
   parent_place_.resize(rows_.size());
   for (std::size_t f = fronts_.size(); f-- > 0;) {  // parents come later: from the roots down
@@ -499,11 +497,10 @@ void MultifrontalCholesky<Real>::solve(double* rhs) {
 
 template <class Real>
 void MultifrontalCholesky<Real>::solve_coordinates(Eigen::Matrix4Xd& rhs) {
-  if constexpr (std::is_same_v<Real, double>) {
+  if constexpr (std::is_same_v<Real, double>)
     substitute<4>(rhs.data());
-  } else {
+  else
     SpdSolver::solve_coordinates(rhs);
-  }
 }
 
 template <class Real>
@@ -527,22 +524,19 @@ void MultifrontalCholesky<Real>::substitute(Real* rhs) {
     for (int k = 0; k < front.columns; k += panel) take_panel_at(front, k, forward);
     std::copy_n(w, width * front.columns, x);
     const Real* below = w + width * front.columns;
-    for (int i = 0; i < front.below(); ++i) {
+    for (int i = 0; i < front.below(); ++i)
       for (int c = 0; c < width; ++c) rhs[width * row[i] + c] += below[width * i + c];
-    }
   }
-  for (std::size_t i = 0; i < pivots_.size(); ++i) {
+  for (std::size_t i = 0; i < pivots_.size(); ++i)
     for (int c = 0; c < width; ++c) rhs[width * i + c] /= pivots_[i];
-  }
   for (std::size_t f = fronts_.size(); f-- > 0;) {  // L^T x = D^-1 y
     const Front& front = fronts_[f];
     const int* row = rows_.data() + front.rows_at;
     Real* x = rhs + width * front.first_column;
     std::copy_n(x, width * front.columns, w);
     Real* below = w + width * front.columns;
-    for (int i = 0; i < front.below(); ++i) {
+    for (int i = 0; i < front.below(); ++i)
       for (int c = 0; c < width; ++c) below[width * i + c] = rhs[width * row[i] + c];
-    }
     std::fill_n(below + width * front.below(), lanes<Real>, Real{0});
     for (int k = (front.columns - 1) / panel * panel; k >= 0; k -= panel)
       take_panel_at(front, k, back);
