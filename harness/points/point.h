@@ -116,6 +116,11 @@ struct RunOutcome {
   std::string detail;
   double setup_seconds = 0;
   Measures measures;
+
+  void end(PointStatus how, std::string why) {
+    status = how;
+    detail = std::move(why);
+  }
 };
 
 struct PointResult : Samples, RunOutcome {

@@ -21,9 +21,8 @@ constexpr double least_filter_sample = 0.005;  // s, of a run with short steps
 void reset_peak_rss() { std::ofstream("/proc/self/clear_refs") << 5; }
 double peak_rss_bytes() {
   std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);) {
+  for (std::string line; std::getline(status, line);)
     if (line.starts_with("VmHWM:")) return 1024 * std::stod(line.substr(6));
-  }
   return 0;
 }
 
@@ -122,13 +121,11 @@ bool calibrate(PointResult& point, const PointRunner& runner, Settings& settings
   point.calibration_seconds = since(begin);
   point.calibration_runs = found.runs;
   point.stiffness = found.stiffness;
-  if (!point.stiffness) {
-    point.status = found.status;
-    point.detail = found.detail;
-    return false;
-  }
-  settings["stiffness"] = *point.stiffness;
-  return true;
+  if (point.stiffness)
+    settings["stiffness"] = *point.stiffness;
+  else
+    point.end(found.status, found.detail);
+  return point.stiffness.has_value();
 }
 
 // The judged run, and a first sample: the same run if it is long enough and undisturbed, and if the
@@ -154,8 +151,7 @@ void measure(PointResult& point, const PointRunner& runner, const Settings& sett
   const Run last =
       a_sample && !disturbed ? sampler.record(std::move(judged)) : sampler.add(a_sample ? 1 : 0);
   if (!point.filter_samples.empty()) point.phases = sampler.phases;
-  point.status = last.status;  // without a time it is not a result
-  point.detail = last.detail;
+  point.end(last.status, last.detail);  // without a time it is not a result
 }
 
 void take_sample(PointResult& more, const RunLimits& limits) {
@@ -184,13 +180,11 @@ void look(PointResult& point, const RunLimits& limits) {
         spec.step};
   point.status = PointStatus::ok;
   if (run.status == PointStatus::not_converged || run.status == PointStatus::diverged) {
-    point.status = run.status;
-    point.detail = run.detail;
+    point.end(run.status, run.detail);
   } else if (const double strain = run.measures.max_strain;
              !springs && runner.backend().strain_control != StrainControl::none &&
              !(strain <= spec.strain_limit * (1 + 1e-9))) {
-    point.status = PointStatus::strain_missed;
-    point.detail = "strain " + told_apart(strain, spec.strain_limit);
+    point.end(PointStatus::strain_missed, "strain " + told_apart(strain, spec.strain_limit));
   }
 }
 
@@ -208,19 +202,16 @@ PointResult run_point(const PointSpec& spec, const RunLimits& limits) {
   PointResult point(spec);
   reset_peak_rss();
   try {
-    if (limits.sample_of) {
+    if (limits.sample_of)
       take_sample(point, limits);
-    } else if (limits.look) {
+    else if (limits.look)
       look(point, limits);
-    } else {
+    else
       run_whole(point, limits);
-    }
   } catch (const std::bad_alloc&) {
-    point.status = PointStatus::out_of_memory;
-    point.detail = "an allocation failed";
+    point.end(PointStatus::out_of_memory, "an allocation failed");
   } catch (const std::invalid_argument& error) {  // the solver does not take the problem
-    point.status = PointStatus::unsupported;
-    point.detail = error.what();
+    point.end(PointStatus::unsupported, error.what());
   }
   point.peak_rss_bytes = peak_rss_bytes();
   return point;

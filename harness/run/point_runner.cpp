@@ -38,9 +38,8 @@ std::string refusal(const StepResult& result, std::int64_t step, double time) {
 }  // namespace
 
 FrameTimes::FrameTimes(double step) {
-  for (const double rate : frame_rates) {
+  for (const double rate : frame_rates)
     if (step * rate <= 1 + rounding) films_.push_back({rate, {}});
-  }
 }
 
 void FrameTimes::add(int steps, double step, double time, double seconds) {
@@ -149,8 +148,8 @@ class PointRunner::Observed : public Observer {
   // Whether the strain of a step ends the run.
   bool overstrained(double strain) {
     if (!keeps_strain() || strain <= stop_at_) return false;
-    run_.status = !(strain <= diverged_strain) ? PointStatus::diverged : PointStatus::strain_missed;
-    run_.detail = concat("strain ", strain, " at step ", run_.stepper->work().steps - 1);
+    run_.end(strain <= diverged_strain ? PointStatus::strain_missed : PointStatus::diverged,
+             concat("strain ", strain, " at step ", run_.stepper->work().steps - 1));
     return true;
   }
 
@@ -165,40 +164,34 @@ class PointRunner::Observed : public Observer {
     using End = DriveState::End;
     if (driven.end == End::arrived) return;
     if (driven.end == End::refused) {
-      run_.status = driven.result.status == Status::not_finite ? PointStatus::diverged
-                                                               : PointStatus::not_converged;
-      run_.detail = refusal(driven.result, run_.stepper->work().steps, time);
-      return;
+      const bool overflow = driven.result.status == Status::not_finite;
+      return run_.end(overflow ? PointStatus::diverged : PointStatus::not_converged,
+                      refusal(driven.result, run_.stepper->work().steps, time));
     }
     const bool slow = driven.end == End::stopped;
-    run_.status = PointStatus::timeout;
-    run_.detail =
-        concat("longer than ", slow ? limits_.hopeless : limits_.timeout, " s",
-               slow ? ", far above the best time so far" : "", "; stopped at t = ", time, " s");
+    run_.end(PointStatus::timeout, concat("longer than ", slow ? limits_.hopeless : limits_.timeout,
+                                          " s", slow ? ", far above the best time so far" : "",
+                                          "; stopped at t = ", time, " s"));
   }
 
   // Judges a run that reached its end.
   void decide() {
     const Measures& found = run_.measures;
-    if (keeps_strain() && !(found.max_strain <= spec_.strain_limit * (1 + 1e-9))) {
-      run_.status = PointStatus::strain_missed;
-      run_.detail = "maximum strain " + told_apart(found.max_strain, spec_.strain_limit) +
-                    " above " + number_text(spec_.strain_limit);
-    } else if (const std::string gained = energy_gained(
-                   judge_->energy(), runner_.scene_.energy_bound, runner_.scene_.duration);
-               !gained.empty()) {
-      run_.status = PointStatus::energy_gained;
-      run_.detail = gained;
-    } else if (const int crossed = judge_->crossings().vertices(); crossed > 0) {
-      run_.status = PointStatus::body_crossed;
-      run_.detail = std::to_string(crossed) + " of " +
-                    std::to_string(runner_.scene_.problem->vertices()) +
-                    " vertices passed through the body; shorter steps may not";
-    } else if (found.moved < least_motion) {
-      run_.status = PointStatus::motion_lost;
-      run_.detail = concat("its vertices moved ", number_text(found.moved, 3),
-                           " times as far as the reference's, ", least_motion, " are needed");
-    }
+    const Scene& scene = runner_.scene_;
+    if (keeps_strain() && !(found.max_strain <= spec_.strain_limit * (1 + 1e-9)))
+      return run_.end(PointStatus::strain_missed,
+                      "maximum strain " + told_apart(found.max_strain, spec_.strain_limit) +
+                          " above " + number_text(spec_.strain_limit));
+    const std::string gained = energy_gained(judge_->energy(), scene.energy_bound, scene.duration);
+    if (!gained.empty()) return run_.end(PointStatus::energy_gained, gained);
+    if (const int crossed = judge_->crossings().vertices(); crossed > 0)
+      return run_.end(PointStatus::body_crossed,
+                      concat(crossed, " of ", scene.problem->vertices(),
+                             " vertices passed through the body; shorter steps may not"));
+    if (found.moved < least_motion)
+      run_.end(PointStatus::motion_lost,
+               concat("its vertices moved ", number_text(found.moved, 3),
+                      " times as far as the reference's, ", least_motion, " are needed"));
   }
 
   const PointRunner& runner_;
