@@ -28,8 +28,6 @@ struct Pace {
   int halvings = 0;  // how often a step that is refused may be halved
 };
 
-inline constexpr int usual_halvings = inextensible::StepController::Settings{}.most_halvings;
-
 struct DriveLimits {
   double timeout = std::numeric_limits<double>::infinity();  // s of wall time, since `begin`
   Clock::time_point begin = Clock::now();
@@ -84,17 +82,16 @@ DriveState drive(Stepper& stepper, State& state, const Pace& pace, O& observer,
       driven.smallest = controller->smallest();
       driven.next = controller->next();
     }
-    if (!driven.result) {
+    if (!driven.result)
       driven.end = DriveState::End::refused;
-    } else if (!observer.after(state, driven)) {
+    else if (!observer.after(state, driven))
       driven.end = DriveState::End::stopped;
-    } else if (limits.interrupted && limits.interrupted()) {
+    else if (limits.interrupted && limits.interrupted())
       throw Interrupted();
-    } else if (driven.steps < pace.steps && since(limits.begin) > limits.timeout) {
+    else if (driven.steps < pace.steps && since(limits.begin) > limits.timeout)
       driven.end = DriveState::End::timed_out;
-    } else {
+    else
       continue;
-    }
     break;
   }
   return driven;
