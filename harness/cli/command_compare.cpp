@@ -28,9 +28,8 @@ struct CompareOptions {
 
   // Throws UsageError for a report that cannot be written.
   void check_reports() const {
-    for (const std::string& path : {junit, markdown}) {
+    for (const std::string& path : {junit, markdown})
       if (!path.empty()) check_writable(path);
-    }
   }
 
   // Prints the comparison and writes the reports. Returns the exit code: a failure outranks a

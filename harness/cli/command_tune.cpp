@@ -149,9 +149,8 @@ struct Tune {
     std::cout
         << "kind           solver                             size  limit   gain   settings\n";
     for (const SweepSpec& on : chosen) {
-      for (const std::string& name : chosen_solvers(solver, on)) {
+      for (const std::string& name : chosen_solvers(solver, on))
         if (tune_one(on, name, run, entries)) write_entries(file, entries);
-      }
     }
     std::cout << "\nwritten:\n" << file << std::endl;
     return success;

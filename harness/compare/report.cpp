@@ -22,10 +22,9 @@ std::vector<PointChange> rows_of(const Comparison& comparison) {
 
 std::string counts(const Comparison& comparison) {
   std::string text;
-  for (std::size_t i = 0; i < change_names.size(); ++i) {
+  for (std::size_t i = 0; i < change_names.size(); ++i)
     if (const std::size_t n = comparison.count(static_cast<Change>(i)); n > 0)
       append(text, std::to_string(n) + " " + change_names[i]);
-  }
   return std::to_string(comparison.points.size()) + " points: " + text;
 }
 
@@ -45,13 +44,11 @@ std::vector<std::string> all_notes(const Comparison& comparison) {
 std::string escaped(const std::string& text, const std::unordered_map<char, std::string>& by,
                     char control) {
   std::string result;
-  for (const char c : text) {
-    if (const auto found = by.find(c); found != by.end()) {
+  for (const char c : text)
+    if (const auto found = by.find(c); found != by.end())
       result += found->second;
-    } else {
+    else
       result += static_cast<unsigned char>(c) < 0x20 ? control : c;
-    }
-  }
   return result;
 }
 

@@ -119,15 +119,13 @@ Recording record(const FilmSpec& spec, const std::function<void(const FilmRun&)>
   const Scene& scene = recording.scene;
   const auto* body = dynamic_cast<const inextensible::TriangleCollider*>(scene.problem->collider());
   if (body) recording.body = body->mesh();
-  if (const auto& motion = scene.problem->body_motion()) {
+  if (const auto& motion = scene.problem->body_motion())
     for (std::size_t i = 0; i < frames_in(spec); ++i)
       recording.body_poses.push_back(
           motion(scene.start.time + static_cast<double>(i) / spec.frames_per_second));
-  }
-  for (const double limit : spec.strain_limits) {
+  for (const double limit : spec.strain_limits)
     for (const Contestant& contestant : spec.solvers)
       recording.takes.push_back(take_of(spec, scene, contestant, limit, told));
-  }
   return recording;
 }
 

@@ -10,11 +10,10 @@ struct nlohmann::adl_serializer<std::variant<double, std::string>> {  // a setti
     std::visit([&to](const auto& held) { to = held; }, value);
   }
   static void from_json(const json& from, std::variant<double, std::string>& value) {
-    if (from.is_string()) {
+    if (from.is_string())
       value = from.get<std::string>();
-    } else {
+    else
       value = from.get<double>();
-    }
   }
 };
 

@@ -68,12 +68,6 @@ ordered_json point_schema(ordered_json point) {
   return point;
 }
 
-ordered_json answer_row_schema() {
-  ordered_json row = closed_object();
-  add_fields(row, answer_row_fields);
-  return row;
-}
-
 ordered_json schema_document(const std::string& name) {
   const std::string path = source_path("configs/" + name + ".schema.json");
   ordered_json schema = ordered_json::parse(read_file(path, "schema"));
@@ -86,7 +80,11 @@ ordered_json schema_document(const std::string& name) {
   renew("counter", [] { return ordered_json{{"enum", counter_names()}}; });
   renew("work", work_schema);
   renew("point", [&definitions] { return point_schema(definitions["point"]); });
-  renew("answer_row", answer_row_schema);
+  renew("answer_row", [] {
+    ordered_json row = closed_object();
+    add_fields(row, answer_row_fields);
+    return row;
+  });
   return schema;
 }
 

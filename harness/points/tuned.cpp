@@ -130,13 +130,12 @@ Tuned read_tuned_up_to_date(const std::string& file) {
   const bool path = file.find('/') != std::string::npos;
   Tuned tuned = parse_tuned(
       read_file(path ? file : source_path("configs/" + file), "file of tuned settings"), file);
-  for (const TunedEntry& entry : tuned.entries) {
+  for (const TunedEntry& entry : tuned.entries)
     if (const std::string change = rule_change(entry); !change.empty())
       throw UsageError("tuned settings '" + tuned.file + "': those of " + entry.solver +
                        " for the " + entry.kind + " were found by another rule: " + change +
                        "; search again: bench tune --scene " + entry.kind + " --solver " +
                        entry.solver);
-  }
   return tuned;
 }
 

@@ -182,9 +182,8 @@ struct Tuner {
         best_step(settings, own == measured.end() ? leader.rung : own->second.rung, in_race ? 1 : 2,
                   hopeless);
     // One run is enough to rule out slower settings.
-    if (fastest.ok() && (!in_race || fastest.seconds() < leader.seconds)) {
+    if (fastest.ok() && (!in_race || fastest.seconds() < leader.seconds))
       for (int i = 1; i < samples; ++i) repeat(fastest);
-    }
     const bool found = fastest.ok() && fastest.seconds() <= hopeless;
     options.tell(scene.scene + "/" + search.base.solver + " " + json(settings).dump() + ": " +
                  (found ? duration_text(fastest.seconds()) + "/s" : "too slow"));

@@ -31,11 +31,10 @@ Eigen::Matrix2Xd waves(int n, double l, double slope) {
 void lay(Scene& scene, const Eigen::Matrix2Xd& weft, const Eigen::Matrix2Xd& warp, double y,
          double aside = 0) {
   const Eigen::Index n = weft.cols();
-  for (Eigen::Index i = 0; i < n; ++i) {
+  for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index j = 0; j < n; ++j)
       scene.start.x.col(i * n + j) << weft(0, j) + aside, y + weft(1, j) + warp(1, i),
           warp(0, i) - 0.5 * aside;
-  }
 }
 
 // Off the ball's axis and in two unlike waves, so that no symmetry is left. Along each side the

@@ -15,9 +15,8 @@ constexpr std::pair<const char*, Direction> directions[] = {
 };
 
 bool is_about(const std::string& word, const Backend& backend) {
-  for (const auto& [name, direction] : directions) {
+  for (const auto& [name, direction] : directions)
     if (word == name) return backend.direction == direction;
-  }
   if (word == "no collider")
     return !backend.takes_collider && inextensible::is_built_in(backend.name);
   return word == backend.name || word == backend.method ||

@@ -34,10 +34,9 @@ ExpectationCounts StabilityOutcome::counts() const {
 StabilityPlan plan_stability(const std::string& profile, const std::optional<Pattern>& solver,
                              const std::optional<Pattern>& hard_case) {
   StabilityPlan plan{{}, hard_cases(profile)};
-  for (const auto& backend : backends()) {
+  for (const auto& backend : backends())
     if (backend.contestant && (!solver || matches(*solver, backend.name)))
       plan.solvers.emplace_back(backend.name);
-  }
   const auto selected = [&](const std::string& name) {
     return !hard_case || hard_case->found_in(name);
   };
@@ -52,11 +51,10 @@ StabilityPlan plan_stability(const std::string& profile, const std::optional<Pat
   });
   plan.freedom = selected("triangles");
   const auto has = [&](const char* name) { return std::ranges::count(plan.solvers, name) > 0; };
-  if (has("fast_projection") && has("icd")) {
+  if (has("fast_projection") && has("icd"))
     for (const double limit : {0.01, 0.001})
       plan.frames.insert(plan.frames.end(),
                          {{"drape", 21, limit}, {"drape", 31, limit}, {"patch", 21, limit}});
-  }
   std::erase_if(plan.frames,
                 [&](const auto& scene) { return !selected("same frame " + scene.name()); });
   if (plan.solvers.empty()) throw UsageError("no contestant matches --solver");
@@ -94,9 +92,8 @@ StabilityOutcome run_stability(const StabilityPlan& plan, std::uint64_t seed,
       }
     }
     if (plan.freedom) {
-      for (const int n : {11, 21, 41}) {
+      for (const int n : {11, 21, 41})
         for (const Freedom& f : degrees_of_freedom(n)) outcome.freedom.push_back(f);
-      }
     }
     for (const SameFrameScene& scene : plan.frames) {
       stop_if_asked();
@@ -133,7 +130,7 @@ namespace {
 
 json known_json() {
   json list = json::array();
-  for (const KnownDifference& known : known_differences()) {
+  for (const KnownDifference& known : known_differences())
     for (const std::string& hard_case : known.hard_cases)
       list.push_back({{"case", hard_case},
                       {"solver", known.solver},
@@ -141,7 +138,6 @@ json known_json() {
                       {"outcome", known.outcome},
                       {"reason", known.reason},
                       {"mends", known.remedy}});
-  }
   return list;
 }
 

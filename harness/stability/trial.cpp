@@ -43,10 +43,9 @@ bool TrialJudge::after(const State& state, const DriveState& driven) {
 bool TrialJudge::judge_counters(const DriveState& driven) {
   const WorkCounters& now = stepper_.work();
   bool falls = false;
-  for (const auto& counter : inextensible::work_counters) {
+  for (const auto& counter : inextensible::work_counters)
     if (const auto* count = std::get_if<std::int64_t WorkCounters::*>(&counter.member))
       falls = falls || now.**count < work_.**count;
-  }
   if (falls) return broke(Promise::counters, "a counter fell");
   return (now.steps == work_.steps + 1 && driven.result.iterations >= 0) ||
          broke(Promise::counters, "steps or iterations are wrong");
@@ -56,10 +55,9 @@ bool TrialJudge::after(const Positions& filtered, const State& state, double h) 
   if (!state.x.allFinite() || !state.v.allFinite())
     return broke(Promise::finite, "a state that is not finite was accepted");
   if (!judge_strain(filtered, state) || !judge_contact(state)) return false;
-  for (const int pin : problem_.pinned()) {
+  for (const int pin : problem_.pinned())
     if (state.x.col(pin) != start_.x.col(pin))
       return broke(Promise::pins, "pinned vertex " + std::to_string(pin) + " moved");
-  }
   return judge_momentum(state, h) && judge_energy(state, h);
 }
 
