@@ -8,7 +8,6 @@
 #include "harness/judge/drive.h"
 #include "harness/judge/mechanics.h"
 #include "harness/run/calibration.h"
-#include "harness/scenes/fabrics.h"
 #include "harness/scenes/meshes.h"
 #include "solvers/problem/edge_constraints.h"
 
@@ -37,16 +36,10 @@ KnownAnswer known_answer_of(const json& entry) {
   answer.reading = reading_named(entry.at("reading"));
   for (int i = 0; i < entry.at("steps").get<int>(); ++i)
     answer.steps.push_back(std::ldexp(entry.at("first_step").get<double>(), -i));
-  if (entry.contains("fabric")) {
-    const Fabric& cloth = fabric(entry.at("fabric").get<std::string>());
-    answer.given["density"] = cloth.density;
-    answer.given["bending"] = cloth.bending;
-    answer.exact = cloth.drape_coefficient;
-  } else if (const json& exact = entry.at("exact"); exact.is_string()) {
+  if (const json& exact = entry.at("exact"); exact.is_string())
     answer.exact = formulas.at(exact)(complete_parameters(*find_scene(answer.scene), answer.given));
-  } else {
+  else
     answer.exact = exact;
-  }
   return answer;
 }
 
