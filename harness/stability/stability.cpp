@@ -118,11 +118,9 @@ static void to_json(json& object, const SameFrame& frame) {
             {"side", frame.scene.side},
             {"strain_limit", frame.scene.strain_limit},
             {"step", frame.scene.step},
-            {"start_moved_by", frame.scene.moved},
             {"first_contact", frame.first_contact},
             {"times", frame.times},
             {"icd", frame.icd},
-            {"moved_start", frame.moved_start},
             {"stopped", frame.stopped}};
 }
 

@@ -162,22 +162,18 @@ TEST(Stability, StrainIsKeptOfTheFirstAndTheLastSecond) {
   }
 }
 
-// Frames of hardly moved starts are that close before contact, and ICD is within the limit's slack.
+// Before contact ICD is within the limit's slack.
 TEST(SameFrame, RunsAgreeBeforeContactAndAreComparedAfterIt) {
   const auto found = harness::same_frame({"drape", 9, 0.01}, 1);
   EXPECT_EQ(found.stopped, "");
   EXPECT_GT(found.first_contact, 0.01);  // 1 mm above the sphere
   EXPECT_LT(found.first_contact, 0.03);
-  const auto &icd = found.icd.rms, &moved = found.moved_start.rms;
+  const auto& icd = found.icd.rms;
   ASSERT_EQ(found.times.size(), icd.size());
-  ASSERT_EQ(found.times.size(), moved.size());
   EXPECT_NEAR(found.times.back(), 1, 1e-12);
   for (std::size_t i = 0; i < found.times.size(); ++i) {
     EXPECT_GE(found.icd.largest[i], icd[i]);
-    if (found.times[i] >= found.first_contact) continue;
-    EXPECT_GT(moved[i], 1e-11);
-    EXPECT_LT(moved[i], 1e-9);
-    EXPECT_LT(icd[i], 0.01);
+    EXPECT_TRUE(found.times[i] >= found.first_contact || icd[i] < 0.01) << found.times[i];
   }
   EXPECT_GT(icd.back(), 0);
 }
