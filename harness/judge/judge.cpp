@@ -26,7 +26,7 @@ Judge::Judge(const Scene& scene, const Options& options)
       energy_(scene, options.velocities),
       crossings_(*scene.problem) {
   options_.sample_every = std::max(1, options_.sample_every);
-  if (options_.residual) probe_.emplace();
+  if (options_.residuals) probe_.emplace();
 }
 
 void Judge::before(const State& state, double h) {
@@ -81,7 +81,6 @@ void Judge::add_errors(Measures& measures) const {
 double Judge::after(const Positions& filtered, const State& state, double h, bool counts) {
   const StrainRange range = strain_range(*scene_.problem, filtered);
   running_.max_strain = std::max(running_.max_strain, range.most);
-  running_.max_stretch = std::max(running_.max_stretch, range.stretch);
   if (scene_.problem->collider())
     raise(running_.max_strain_after_collision, strain_range(*scene_.problem, state.x).most);
   energy_.after(state, h);
@@ -109,7 +108,6 @@ void Judge::look_at_marks(const State& state, double h) {
 void Judge::sample(const Positions& filtered, const State& state) {
   const auto& problem = *scene_.problem;
   append_strains(problem, filtered, strains_);
-  if (problem.collider()) append_strains(problem, state.x, delivered_);
   kinetic_sum_ += inextensible::kinetic_energy(problem, state.v);
   ++samples_;
 }
@@ -118,29 +116,16 @@ Measures Judge::finish() {
   energy_.finish();
   Measures measures = running_;
   measures.energy_gain = energy_.gain();
-  measures.energy_gain_time = energy_.gain_time();
   if (scene_.conserves_energy) measures.energy_drift = energy_.drift();
   if (energy_can_only_fall(*scene_.problem)) measures.energy_rise = energy_.rise();
   if (samples_ > 0) {
     measures.kinetic_energy_mean = kinetic_sum_ / samples_;
     measures.rms_strain = root_mean_square(strains_);
     measures.p99_strain = quantile(strains_, 0.99);
-    const bool moved = scene_.problem->collider();  // else what was measured is what is delivered
-    measures.delivered_strain_rms = moved ? root_mean_square(delivered_) : measures.rms_strain;
-    measures.delivered_strain_p99 = moved ? quantile(delivered_, 0.99) : measures.p99_strain;
   }
   if (marked_time_ > 0) {
     for (auto& [name, sag] : measures.sag) sag /= marked_time_;
     measures.rest_speed = std::sqrt(squared_speed_ / marked_time_);
-  }
-  if (!measures.residuals.empty()) {
-    const auto count = static_cast<double>(measures.residuals.size());
-    measures.residual_first = measures.residual_last = 0;
-    for (const auto& residual : measures.residuals) {
-      measures.residual_first += residual.first / count;
-      measures.residual_last += residual.last / count;
-    }
-    if (!options_.residual_series) measures.residuals.clear();
   }
   if (!options_.reference) {
     measures.unknown_because = "no reference of this scene, size and parameters";

@@ -47,8 +47,7 @@ class Judge {
     int sample_every = 1;  // full statistics are taken at every n-th step
     std::shared_ptr<const Reference> reference = nullptr;
     Velocities velocities = Velocities::half_step;  // the method's
-    bool residual = false;         // is measured where the solver shows its iterates (observer())
-    bool residual_series = false;  // the residual over time too, not its means alone
+    bool residuals = false;  // are recorded where the solver shows its iterates (observer())
   };
   Judge(const Scene& scene, const Options& options);
 
@@ -75,8 +74,7 @@ class Judge {
   Options options_;
   int steps_ = 0;
   Measures running_;
-  std::vector<double> strains_;    // |strain| of every edge at every sampled instant
-  std::vector<double> delivered_;  // the same after the collision filter; with a collider only
+  std::vector<double> strains_;  // |strain| of every edge at every sampled instant
   EnergyRecord energy_;
   Crossings crossings_;
   double kinetic_sum_ = 0;

@@ -136,10 +136,7 @@ class PointRunner::Observed : public Observer {
     options.velocities = backend_.velocities;
     if (stop_at_ != diverged_strain) return options;  // no errors, and nothing beside them
     options.reference = runner_.reference_;
-    // Memory for iterates would distort the growth that a resolution sweep measures.
-    options.residual = backend_.shows_iterates && spec_.sweep != "resolution";
-    // Only a figure of step sweeps draws the series.
-    options.residual_series = spec_.sweep == "step";
+    options.residuals = backend_.shows_iterates && spec_.sweep == "step";  // for Figure 3
     return options;
   }
 

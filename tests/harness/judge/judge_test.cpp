@@ -142,11 +142,6 @@ TEST(Judge, MeasuresStrainBeforeAndAfterTheObstacle) {
   const Measures found = judge.finish();
   EXPECT_NEAR(found.max_strain, 0, 1e-12);
   EXPECT_NEAR(found.max_strain_after_collision, 0.2, 1e-12);
-  // One of the twelve edges is longer and one shorter by 0.2, two turn: sqrt(1.04) - 1.
-  const double turned = std::sqrt(1.04) - 1;
-  EXPECT_NEAR(found.delivered_strain_rms, std::sqrt((2 * 0.2 * 0.2 + 2 * turned * turned) / 12),
-              1e-12);
-  EXPECT_GT(found.delivered_strain_p99, 0.19);
   EXPECT_NEAR(found.rms_strain, 0, 1e-12);
 }
 
