@@ -115,10 +115,8 @@ struct JudgeVerb {
       throw UsageError("'" + scene + "' is no scene that bench export wrote: no scene.json there");
     if (name.empty()) name = "trajectory";
     const auto type = find_scene(scene);
-    PointSpec spec;
-    spec.sweep = "strain";
-    spec.scene = type->name;
-    spec.scene_parameters = complete_parameters(*type, {});
+    PointSpec spec{
+        .sweep = "strain", .scene = type->name, .scene_parameters = complete_parameters(*type, {})};
     spec.resolution = static_cast<int>(spec.scene_parameters.at(type->resolution));
     std::tie(spec.vertices, spec.constraints) = type->counts(spec.scene_parameters);
     spec.contestant = spec.solver = name;
@@ -139,13 +137,13 @@ struct JudgeVerb {
     if (!out.empty()) {
       Suite suite;
       suite.name = suite.profile = "judged";
-      SweepSpec& sweep = suite.sweeps.emplace_back();
-      sweep.sweep = spec.sweep;
-      sweep.scene = spec.scene;
-      sweep.contestants = {{name, name}};
-      sweep.limits = {point.spec.strain_limit};
-      sweep.resolutions = {spec.resolution};
-      sweep.coarsest = sweep.finest = spec.step;
+      suite.sweeps = {{.sweep = spec.sweep,
+                       .scene = spec.scene,
+                       .contestants = {{name, name}},
+                       .limits = {point.spec.strain_limit},
+                       .resolutions = {spec.resolution},
+                       .coarsest = spec.step,
+                       .finest = spec.step}};
       json context = machine_context();
       context["timed"] = seconds > 0;
       context["selection"] = {{"solver", ""}, {"filter", ""}, {"exclude", ""}};

@@ -16,14 +16,13 @@ Settings calibrated(const FilmSpec& spec, const Contestant& contestant, double l
   Settings settings = contestant.settings_for(size, limit);
   if (backend.strain_control != StrainControl::stiffness || settings.contains("stiffness"))
     return settings;
-  PointSpec point;
-  point.sweep = "strain";
-  point.scene = spec.scene;
-  point.scene_parameters = spec.parameters;
-  point.solver = contestant.solver;
-  point.settings = settings;
-  point.strain_limit = limit;
-  point.step = step;
+  const PointSpec point{.sweep = "strain",
+                        .scene = spec.scene,
+                        .scene_parameters = spec.parameters,
+                        .solver = contestant.solver,
+                        .settings = settings,
+                        .strain_limit = limit,
+                        .step = step};
   const PointResult found = run_point(point, {.interrupted = interrupted, .timed = false});
   if (found.stiffness) settings["stiffness"] = *found.stiffness;
   return settings;

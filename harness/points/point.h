@@ -78,9 +78,9 @@ struct PointSpec {
   SceneParameters scene_parameters;  // complete
   int resolution = 0;                // the scene's own resolution parameter
   int vertices = 0, constraints = 0;
-  std::string contestant;  // the solver, or its name where it is in a run several times
-  std::string solver;
-  Settings settings;  // given ones only
+  std::string contestant = {};  // the solver, or its name where it is in a run several times
+  std::string solver = {};
+  Settings settings = {};  // given ones only
   double strain_limit = 0.01;
   double step = 0.01;  // s
   std::uint64_t seed = 1;

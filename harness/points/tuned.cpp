@@ -18,15 +18,13 @@ std::string hash_of(const std::vector<TunedEntry>& entries) {
 
 SweepSpec tuning_scene(const char* scene, std::vector<int> sizes, double coarsest, double duration,
                        std::vector<double> limits = {0.02, 0.002, 0.0002}) {
-  SweepSpec spec;
-  spec.sweep = "strain";
-  spec.scene = scene;
-  spec.limits = std::move(limits);
-  spec.resolutions = std::move(sizes);
-  spec.coarsest = coarsest;
-  spec.finest = 1.0 / 6400;
-  spec.scene_parameters = {{"duration", duration}};
-  return spec;
+  return {.sweep = "strain",
+          .scene = scene,
+          .limits = std::move(limits),
+          .resolutions = std::move(sizes),
+          .coarsest = coarsest,
+          .finest = 1.0 / 6400,
+          .scene_parameters = {{"duration", duration}}};
 }
 
 }  // namespace

@@ -121,12 +121,14 @@ TEST_F(Exchange, FramesThatAreNotTheScenesAreRefused) {
 
 // The judge's verdict on a solver's own frames is that of the solver's run.
 TEST_F(Exchange, FramesOfARunAreJudgedAsTheRun) {
-  PointSpec spec;
-  spec.sweep = "strain";
-  spec.scene = "drape";
-  spec.scene_parameters = complete_parameters(*find_scene("drape"), {{"n", 5}, {"duration", 0.2}});
-  spec.contestant = spec.solver = "gauss_seidel";
-  spec.step = 0.01;
+  PointSpec spec{
+      .sweep = "strain",
+      .scene = "drape",
+      .scene_parameters = complete_parameters(*find_scene("drape"), {{"n", 5}, {"duration", 0.2}}),
+      .contestant = "gauss_seidel",
+      .solver = "gauss_seidel",
+      .settings = {},
+      .step = 0.01};
   const PointResult run = run_point(spec, {.timed = false});
   auto played = std::make_shared<Trajectory>();
   played->interval = spec.step;
