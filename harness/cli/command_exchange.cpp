@@ -1,6 +1,4 @@
 // bench export and bench judge: scenes for other programs, and what these made of them.
-#include <algorithm>
-#include <filesystem>
 
 #include "harness/analysis/measured_point.h"
 #include "harness/cli/command.h"
@@ -8,7 +6,6 @@
 #include "harness/points/context.h"
 #include "harness/points/result_file.h"
 #include "harness/points/schema.h"
-#include "harness/run/measure_point.h"
 #include "harness/scenes/scene_folder.h"
 
 namespace harness {

@@ -2,7 +2,6 @@
 #include <fstream>
 #include <set>
 
-#include "harness/analysis/plane.h"
 #include "harness/answers/answer.h"
 #include "harness/base/child_process.h"
 #include "harness/base/clock.h"

@@ -4,7 +4,6 @@
 #include "harness/judge/crossings.h"
 #include "harness/judge/energy.h"
 #include "harness/judge/reference.h"
-#include "harness/points/point.h"
 #include "solvers/problem/edge_constraints.h"
 
 namespace harness {

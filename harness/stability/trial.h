@@ -5,7 +5,6 @@
 #include "harness/judge/drive.h"
 #include "harness/judge/energy.h"
 #include "harness/judge/mechanics.h"
-#include "harness/points/point.h"
 
 namespace harness {
 
