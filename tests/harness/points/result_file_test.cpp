@@ -70,10 +70,12 @@ TEST(Schemas, AreThoseOfCommittedFiles) {
       std::string schema = kind.substr(13, kind.find('/') - 13);
       if (schema == "bench") schema = "result";
       EXPECT_EQ(misfit(document, schema), "") << entry.path();
-      if (schema == "result")
+      if (schema == "result") {
         EXPECT_EQ(misfit(analysis::analysis_of(document), "analysis"), "") << entry.path();
-      if (schema == "suite")
+      }
+      if (schema == "suite") {
         EXPECT_NO_THROW(static_cast<void>(read_suite(entry.path()))) << entry.path();
+      }
     }
   }
   EXPECT_NO_THROW(static_cast<void>(read_tuned_up_to_date("tuned.json")));

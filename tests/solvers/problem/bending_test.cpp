@@ -30,7 +30,9 @@ TEST(YarnBending, OfACircleIsHalfItsRigidityTimesCurvatureSquaredTimesLength) {
     }
     const double exact = 0.5 * rigidity / (radius * radius) * 2 * std::numbers::pi * radius;
     const double error = std::abs(bending_energy(bending, x) / exact - 1);
-    if (n == 40) EXPECT_NEAR(std::log2(last / error), 2, 0.1);
+    if (n == 40) {
+      EXPECT_NEAR(std::log2(last / error), 2, 0.1);
+    }
     last = error;
   }
   EXPECT_LT(last, 0.01);

@@ -131,10 +131,11 @@ TEST(TriangleCollider, PushOutMovesWhatIsInsideToTheSurfaceWhateverTheFriction) 
                        moved = (x.col(v) - candidate.col(v)).norm();
           inside += distance < 0;
           EXPECT_GE(collider->nearest_by_all(x.col(v)).signed_distance, -1e-12);
-          if (distance >= 0)
+          if (distance >= 0) {
             EXPECT_EQ(moved, 0) << candidate.col(v).transpose();
-          else if (convex && friction == 0)  // either of two faces at the same distance will do
+          } else if (convex && friction == 0) {  // either of two faces at the same distance will do
             EXPECT_NEAR(moved, -distance, 1e-12) << candidate.col(v).transpose();
+          }
         }
         EXPECT_GT(inside, testing::trials(100));
         EXPECT_EQ(work.contacts, inside);
