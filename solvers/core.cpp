@@ -13,9 +13,8 @@ std::unique_ptr<SpdSolver> make_block_tridiagonal(SymmetricPattern pattern);
 std::span<const SpdSolverRow> spd_solvers() {
   constexpr auto upper = SymmetricPattern::Triangle::upper;
   static constexpr SpdSolverRow table[] = {
-      {"tridiagonal", "L D L^T from both ends", upper, Takes::tridiagonal, make_tridiagonal},
-      {"block_tridiagonal", "the same of 3 x 3 blocks", upper, Takes::block_tridiagonal,
-       make_block_tridiagonal}};
+      {"tridiagonal", upper, Takes::tridiagonal, make_tridiagonal},
+      {"block_tridiagonal", upper, Takes::block_tridiagonal, make_block_tridiagonal}};
   return table;
 }
 

@@ -65,9 +65,8 @@ Backend completed(Backend row) {
   if (!row.family || !*row.family) row.family = row.name;
   row.method = row.name;
   if (!*row.stepper) row.stepper = row.make_filter || row.backward_euler ? "backward_euler" : "own";
-  for (SettingInfo& setting : row.settings) {
+  for (SettingInfo& setting : row.settings)
     if (setting.departs) setting.tunable.reset();
-  }
   return row;
 }
 
@@ -97,10 +96,9 @@ std::vector<Backend> in_all_steppers(std::span<const Backend> methods) {
     const Backend published = completed(method);
     rows.push_back(published);
     if (!method.contestant) continue;
-    for (const TimeStepper& stepper : time_steppers()) {
+    for (const TimeStepper& stepper : time_steppers())
       if (stepper.name != std::string_view(published.stepper) && !mismatch(published, stepper))
         rows.push_back(paired(method, stepper));
-    }
   }
   return rows;
 }
@@ -192,10 +190,9 @@ std::unique_ptr<Stepper> make_stepper(std::string_view name, Shared problem,
                                       const BackendOptions& options) {
   const Backend& backend = row_of(name);
   const BackendOptions resolved = checked(backend, *problem, options);
-  for (const TimeStepper& stepper : time_steppers()) {
+  for (const TimeStepper& stepper : time_steppers())
     if (stepper.around && stepper.name == std::string_view(backend.stepper))
       return stepper.around(std::move(problem), backend, resolved);
-  }
   return backend.make(std::move(problem), resolved);
 }
 

@@ -1,6 +1,5 @@
 #include "contestants/common/links.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>

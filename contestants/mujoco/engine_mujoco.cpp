@@ -11,7 +11,6 @@
 #include <cstring>
 #include <memory>
 #include <stdexcept>
-#include <string>
 
 #include "contestants/common/links.h"
 

@@ -1,15 +1,9 @@
-#include <algorithm>
-#include <functional>
-#include <map>
-#include <tuple>
 
-#include "harness/analysis/findings.h"
+#include "harness/analysis/plane.h"
 #include "harness/base/table.h"
 #include "harness/points/point_json.h"
 
 namespace harness::analysis {
-
-using nlohmann::json;
 
 static json ratio_json(const std::optional<Ratio>& ratio) {
   if (!ratio) return nullptr;
@@ -53,9 +47,8 @@ static void to_json(json& to, const Cell& cell) {
 // Rows that figures show first: methods that are first in a cell, then the paper's six.
 static std::vector<std::string> leaders_of(const Plane& plane) {
   std::vector<std::string> rows;
-  for (const Cell& cell : plane.cells) {
+  for (const Cell& cell : plane.cells)
     if (cell.first()) rows.push_back(cell.first()->row);
-  }
   for (const PaperMethod& method : all_paper_methods) rows.emplace_back(method.name);
   return in_order(rows, std::identity());
 }
@@ -122,10 +115,9 @@ json curves_of(const ContestantRoles& roles, const std::vector<Plane>& planes) {
       for (const auto& [panel, level] :
            {std::pair("any", any_motion), {"within", headline_error}}) {
         json& curves = figure[panel];
-        for (const Entry& entry : plane.cell(limit, level).entries) {
+        for (const Entry& entry : plane.cell(limit, level).entries)
           if (!entry.role.again)
             curves[entry.role.name]["best"].push_back(best_json(x, entry.point));
-        }
         for (const auto& [name, own] : own_runs) {
           const std::string why = failure_letters(own, limit, level);
           if (!why.empty()) curves[name]["failures"].push_back({x, why});

@@ -1,5 +1,4 @@
-#include "harness/analysis/findings.h"
-
+#include "harness/analysis/plane.h"
 #include "harness/base/text.h"
 
 namespace harness::analysis {

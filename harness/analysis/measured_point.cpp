@@ -1,14 +1,11 @@
 #include "harness/analysis/measured_point.h"
 
 #include <iomanip>
-#include <sstream>
 
 #include "harness/base/text.h"
 #include "harness/points/point_json.h"
 
 namespace harness::analysis {
-
-using nlohmann::json;
 
 Point::Point(const json& document, double noise)
     : result_(std::make_shared<PointResult>(point_of(document))),
@@ -68,9 +65,8 @@ Runs::Runs(const json& document) : roles(document), levels{any_motion} {
   for (const json& p : document.at("points")) points.emplace_back(p, p.value("noise", noise));
   const double finest =
       document.value(json::json_pointer("/context/suite/finest_error"), answer_levels.back());
-  for (const double level : answer_levels) {
+  for (const double level : answer_levels)
     if (level >= finest) levels.push_back(level);
-  }
 }
 
 std::string scene_words(const std::string& scene) {

@@ -1,16 +1,6 @@
 // What analysis works on: the runs and contestants of a result file; and numbers in words.
 #pragma once
 
-#include <array>
-#include <cmath>
-#include <functional>
-#include <map>
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "harness/base/statistics.h"
 #include "harness/points/point.h"
 
@@ -20,7 +10,7 @@ namespace harness::analysis {
 class Point {
  public:
   // noise: of the file's A/A pair, see ratio_of_times.
-  explicit Point(const nlohmann::json& document, double noise = std::nan(""));
+  explicit Point(const json& document, double noise = std::nan(""));
 
   const PointResult& result() const { return *result_; }
   const PointSpec& spec() const { return result_->spec; }
@@ -74,7 +64,7 @@ struct ContestantRoles {
   std::map<std::string, Role> known;
 
   ContestantRoles() = default;
-  explicit ContestantRoles(const nlohmann::json& document);
+  explicit ContestantRoles(const json& document);
   Role of(const std::string& contestant) const;
 };
 
@@ -84,7 +74,7 @@ struct Runs {
   ContestantRoles roles;
   std::vector<double> levels;  // any_motion, then loose to tight, down to the sweep's finest one
 
-  Runs(const nlohmann::json& document);
+  Runs(const json& document);
 };
 
 // The items by their key, in the order in which keys first appear.

@@ -1,7 +1,5 @@
 #include "harness/analysis/plane.h"
 
-#include <stdexcept>
-
 #include "harness/points/suite.h"
 
 namespace harness::analysis {
@@ -94,46 +92,6 @@ Plane plane_of(const std::vector<Point>& points, const Runs& runs) {
   return plane;
 }
 
-// 99th percentile of the frames' wall times, s; not-a-number: not measured.
-double frame_seconds(const Point& point) {
-  for (const FrameTime& frame : point.result().frame_times) {
-    if (frame.rate == frame_rate) return frame.slow;
-  }
-  return std::nan("");
-}
-
-// Sort key: the best reach first, a missing one last.
-std::tuple<int, double, double> worth(const std::optional<Reach>& r) {
-  if (!r) return {2, 0, 0};
-  const double error = std::isnan(r->error) ? std::numeric_limits<double>::infinity() : r->error;
-  return r->right ? std::tuple(0, r->strain_limit, error) : std::tuple(1, error, -r->strain_limit);
-}
-
-BudgetTable table_of(const std::vector<Point>& points, const ContestantRoles& roles,
-                     const std::vector<double>& budgets) {
-  const PointSpec& one = points.front().spec();
-  BudgetTable table{one.scene, one.vertices, budgets, {}};
-  const auto row_of = [&](const Point& p) { return roles.of(p.contestant()).row(); };
-  for (const auto& [row, own] : grouped(points, row_of)) {
-    Budgeted& line = table.rows.emplace_back(Budgeted{row, {}});
-    for (const double budget : budgets) {
-      std::optional<Reach>& best = line.reached.emplace_back();
-      for (const Point& point : own) {
-        const double error = point.error_at(headline_error).distance;
-        const Reach reach{point.spec().strain_limit, error, frame_seconds(point),
-                          error <= headline_error, point};
-        if (reach.frame_seconds <= budget && worth(reach) < worth(best)) best = reach;
-      }
-    }
-  }
-  std::ranges::stable_sort(table.rows, {}, [](const Budgeted& row) {
-    std::vector<std::tuple<int, double, double>> worths;
-    for (const auto& reach : row.reached) worths.insert(worths.begin(), worth(reach));
-    return worths;
-  });
-  return table;
-}
-
 }  // namespace
 
 std::optional<Point> fastest_of(const std::vector<Point>& points, double level) {
@@ -153,9 +111,8 @@ std::optional<Point> fastest_of(const std::vector<Point>& points, double level) 
 }
 
 const Entry* Cell::counting(std::size_t place) const {
-  for (const Entry& entry : entries) {
+  for (const Entry& entry : entries)
     if (entry.counts && place-- == 0) return &entry;
-  }
   return nullptr;
 }
 
@@ -197,9 +154,8 @@ std::optional<Ratio> Cell::lead_over(const Entry* other) const {
 }
 
 const Cell& Plane::cell(double limit, double level) const {
-  for (const Cell& cell : cells) {
+  for (const Cell& cell : cells)
     if (cell.strain_limit == limit && cell.level == level) return cell;
-  }
   throw std::out_of_range("no such cell");
 }
 
@@ -211,21 +167,6 @@ std::vector<Plane> planes_of(const Runs& runs) {
   for (const auto& [place, here] : grouped(runs.points, place_of))
     planes.push_back(plane_of(here, runs));
   return planes;
-}
-
-std::vector<BudgetTable> budget_tables(const Runs& runs, const std::vector<double>& budgets) {
-  std::vector<Point> points = runs.points;
-  std::erase_if(points, [&](const Point& p) {
-    const Role role = runs.roles.of(p.contestant());
-    return !p.ok() || !role.competes || role.again || !(frame_seconds(p) > 0);
-  });
-  const auto place_of = [](const Point& p) {
-    return std::tuple(p.spec().scene, p.spec().scene_parameters, p.spec().vertices);
-  };
-  std::vector<BudgetTable> tables;
-  for (const auto& [place, here] : grouped(points, place_of))
-    tables.push_back(table_of(here, runs.roles, budgets));
-  return tables;
 }
 
 }  // namespace harness::analysis

@@ -2,11 +2,6 @@
 // no edge is strained by more than a limit and the motion error is within a level.
 #pragma once
 
-#include <array>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "harness/analysis/measured_point.h"
 
 namespace harness::analysis {
@@ -72,33 +67,30 @@ struct Plane {
 // In the order of runs.
 std::vector<Plane> planes_of(const Runs& runs);
 
-// ---- Budgets: the tightest strain limit, and its error, within a frame budget ----
+// ---- The answers in words, as the terminal, pages and figures print them ----
 
-inline constexpr double frame_rate = 60;  // frames a second
-
-// A method's best run within a budget: the tightest strain limit with a motion error of at most the
-// headline's, then the least error; without one, the least error at the loosest limit.
-struct Reach {
-  double strain_limit, error;  // error: not-a-number if it is not known
-  double frame_seconds;        // 99th percentile
-  bool right;                  // error at most the headline's
-  Point point;
-};
-
-struct Budgeted {
-  std::string row;                            // an unranked contestant's is its solver's
-  std::vector<std::optional<Reach>> reached;  // one for each budget; none: no run is that fast
-};
-
-// One scene and size. Rows: tightest strain limit at the largest budget first.
-struct BudgetTable {
-  std::string scene;
+// On one plane; for a resolution sweep on the largest one.
+struct Finding {
+  std::string scene, sweep;
   int vertices = 0;
-  std::vector<double> budgets;  // s a frame
-  std::vector<Budgeted> rows;
+  std::string subject;  // "drape of 5041 vertices"
+  // The answer at the limit next to 1 % and the headline's error, or to the nearest question that
+  // has one; then what a tighter limit, or any motion, changes.
+  std::vector<std::string> sentences;
 };
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Finding, scene, sweep, vertices, subject, sentences)
 
-// Runs with a step controller do not take part.
-std::vector<BudgetTable> budget_tables(const Runs& runs, const std::vector<double>& budgets);
+// "At 1 % strain, motion error at most 2 %, x is the fastest: 41.3 ms a simulated second with steps
+// of 1/200 s and an error of 1.4 %; y, the best of the paper's six, takes 2.1 (1.9-2.3) times ..."
+std::string sentence_of(const Cell& cell);
+std::vector<Finding> findings_of(const std::vector<Plane>& planes);
+
+// "chain, 80 vertices, over strain". Planes of one title, as of a resolution sweep, share a table.
+std::string title_of(const Plane& plane);
+// A sentence on the time until which errors at the headline's level are known; "" if they all are.
+std::string span_of_errors(const std::vector<Plane>& planes);
+
+// JSON of schema inextensible-analysis/1, for `bench show --json` and figures.
+json analysis_of(const Runs& runs);
 
 }  // namespace harness::analysis

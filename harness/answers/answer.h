@@ -1,20 +1,10 @@
 // Figures that theory knows of a scene: what a run makes of them, and what they should be.
 #pragma once
 
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <optional>
 #include <ostream>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "harness/base/journal.h"
-#include "harness/base/pattern.h"
 #include "harness/points/schema.h"
-#include "harness/scenes/scene.h"
 
 namespace harness {
 
@@ -26,15 +16,15 @@ struct AnswerScene {
 AnswerScene answer_scene(std::string_view name, const SceneParameters& given);
 
 struct Motion {
-  Motion(const inextensible::State& start, double h) : state(start), step(h) { take(start); }
+  Motion(const State& start, double h) : state(start), step(h) { take(start); }
   // After each accepted step.
-  void take(const inextensible::State& after) {
+  void take(const State& after) {
     before = std::exchange(state, after);
     times.push_back(after.time);
     free_end.emplace_back(after.x.rightCols<1>());
   }
 
-  inextensible::State state, before;      // after and before the last step
+  State state, before;                    // after and before the last step
   double step;                            // s
   std::vector<double> times;              // s, from the start on
   std::vector<Eigen::Vector3d> free_end;  // where the last vertex was at these
@@ -86,9 +76,8 @@ struct AnswerOutcome {
 AnswerOutcome run_answers(const std::vector<AnswerRun>& plan, double timeout,
                           const RunEvents& events);
 
-nlohmann::json answers_document(nlohmann::json context, const std::vector<AnswerRun>& plan,
-                                const AnswerOutcome& outcome,
-                                const std::vector<std::string>& command);
-void print_answers(std::ostream& out, const nlohmann::json& document);
+json answers_document(json context, const std::vector<AnswerRun>& plan,
+                      const AnswerOutcome& outcome, const std::vector<std::string>& command);
+void print_answers(std::ostream& out, const json& document);
 
 }  // namespace harness

@@ -1,25 +1,15 @@
 // The known answers of configs/answers.json, and what solvers make of them.
-#include <cmath>
-#include <functional>
-#include <map>
 #include <numeric>
 
 #include "harness/answers/answer.h"
 #include "harness/base/child_process.h"
-#include "harness/base/clock.h"
-#include "harness/base/errors.h"
-#include "harness/base/fields.h"
-#include "harness/base/files.h"
-#include "harness/base/json.h"
 #include "harness/base/table.h"
 #include "harness/base/text.h"
 #include "harness/judge/drive.h"
 #include "harness/judge/mechanics.h"
 #include "harness/run/calibration.h"
-#include "harness/scenes/fabrics.h"
 #include "harness/scenes/meshes.h"
 #include "solvers/problem/edge_constraints.h"
-#include "solvers/registry.h"
 
 namespace harness {
 
@@ -28,10 +18,6 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(KnownAnswer, name, scene, given,
                                                 until_read, stiffness)
 
 namespace {
-
-using inextensible::Backend;
-using inextensible::State;
-using nlohmann::json;
 
 const std::map<std::string, double (*)(const SceneParameters&)> formulas{
     {"hanging_frequency",
@@ -50,16 +36,10 @@ KnownAnswer known_answer_of(const json& entry) {
   answer.reading = reading_named(entry.at("reading"));
   for (int i = 0; i < entry.at("steps").get<int>(); ++i)
     answer.steps.push_back(std::ldexp(entry.at("first_step").get<double>(), -i));
-  if (entry.contains("fabric")) {
-    const Fabric& cloth = fabric(entry.at("fabric").get<std::string>());
-    answer.given["density"] = cloth.density;
-    answer.given["bending"] = cloth.bending;
-    answer.exact = cloth.drape_coefficient;
-  } else if (const json& exact = entry.at("exact"); exact.is_string()) {
+  if (const json& exact = entry.at("exact"); exact.is_string())
     answer.exact = formulas.at(exact)(complete_parameters(*find_scene(answer.scene), answer.given));
-  } else {
+  else
     answer.exact = exact;
-  }
   return answer;
 }
 
@@ -70,11 +50,11 @@ struct Ending : CalibrationTrial {
 // Keeps the pulls of the last multipliers: lambda_k times the gradient of edge k's constraint.
 class PullObserver final : public inextensible::IterateObserver {
  public:
-  PullObserver(const inextensible::Problem& problem, std::vector<double>& pulls)
+  PullObserver(const Problem& problem, std::vector<double>& pulls)
       : gradient_(3, problem.constraints()), pulls_(pulls) {}
 
-  void iterate(const inextensible::EdgeConstraints& edges, int /*j*/,
-               const inextensible::Positions& x, const Eigen::VectorXd& multipliers) override {
+  void iterate(const inextensible::EdgeConstraints& edges, int /*j*/, const Positions& x,
+               const Eigen::VectorXd& multipliers) override {
     edges.gradient(x, gradient_);
     pulls_.assign(static_cast<std::size_t>(gradient_.cols()), 0);
     for (int k = 0; k < edges.count(); ++k)
@@ -88,21 +68,20 @@ class PullObserver final : public inextensible::IterateObserver {
 };
 
 Ending run_once(const KnownAnswer& answer, const AnswerScene& at, const Backend& backend,
-                const inextensible::Settings& settings, double step, double timeout) {
+                const Settings& settings, double step, double timeout) {
   Ending ending;
   const auto begin = Clock::now();
   const Scene& scene = at.scene;
   State state = start_of(scene, backend, step);
-  const auto stepper = inextensible::make_stepper(backend.name, scene.problem,
-                                                  {answer.strain_limit, 1, settings, &state});
+  const auto stepper =
+      make_stepper(backend.name, scene.problem, {answer.strain_limit, 1, settings, &state});
   Motion motion(state, step);
   PullObserver pulls(*scene.problem, motion.pulls);
   if (answer.needs_multipliers) stepper->observe(&pulls);
   const auto look = [&](const State& after, const DriveState& /*driven*/) {
     motion.take(after);
     raise(ending.strain, strain_range(*scene.problem, stepper->filtered_positions()).most);
-    if (backend.strain_control == inextensible::StrainControl::stiffness &&
-        std::isnan(answer.stiffness) &&
+    if (backend.strain_control == StrainControl::stiffness && std::isnan(answer.stiffness) &&
         !(ending.strain <= calibration_cut_short * answer.strain_limit)) {
       ending.status = PointStatus::strain_missed;
       ending.detail = "strain " + number_text(ending.strain, 3);
@@ -131,10 +110,10 @@ Ending run_once(const KnownAnswer& answer, const AnswerScene& at, const Backend&
 Ending run_calibrated(const KnownAnswer& answer, const Backend& backend, double step,
                       double timeout) {
   const AnswerScene at = answer.at();
-  const auto run = [&](const inextensible::Settings& settings) {
+  const auto run = [&](const Settings& settings) {
     return run_once(answer, at, backend, settings, step, timeout);
   };
-  if (backend.strain_control != inextensible::StrainControl::stiffness) return run({});
+  if (backend.strain_control != StrainControl::stiffness) return run({});
   if (std::isfinite(answer.stiffness)) return run({{"stiffness", answer.stiffness}});
   std::map<double, Ending> endings;
   const Calibration found = calibrate_stiffness(
@@ -200,7 +179,7 @@ std::vector<AnswerRun> plan_answers(const std::optional<Pattern>& answer_pattern
   for (const KnownAnswer& answer : known_answers()) {
     if (answer_pattern && !answer_pattern->matches(answer.name)) continue;
     const AnswerScene at = answer.at();
-    for (const Backend& backend : inextensible::backends()) {
+    for (const Backend& backend : backends()) {
       if (!backend.contestant || (solver && !matches(*solver, backend.name))) continue;
       if (answer.needs_multipliers && !backend.shows_iterates) continue;
       if (inextensible::part_not_taken(backend, *at.scene.problem)) continue;
@@ -224,8 +203,7 @@ AnswerOutcome run_answers(const std::vector<AnswerRun>& plan, double timeout,
       if (events.interrupted()) throw Interrupted();
       const std::string name = run.answer->name + "/" + run.solver;
       const json found = events.once(name + "/" + step_text(step), [&] {
-        return run_apart(*run.answer, *inextensible::find_backend(run.solver), step, timeout,
-                         events.interrupted);
+        return run_apart(*run.answer, *find_backend(run.solver), step, timeout, events.interrupted);
       });
       const double value = number_of(found.at("value"));
       deviations.push_back(exact == 0 ? value : value / exact - 1);

@@ -1,8 +1,5 @@
 // What known answers read off runs: distances, turns, swings, tensions, falls, angles and shadows.
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
-#include <map>
 #include <numbers>
 
 #include "harness/answers/answer.h"
@@ -12,8 +9,6 @@
 
 namespace harness {
 namespace {
-
-using inextensible::Positions;
 
 // RMS distance from the exact motion or the reference at the end of the run, over the size.
 double distance_at_the_end(const AnswerScene& at, const Motion& motion) {
@@ -79,7 +74,7 @@ double swing_kept(const AnswerScene& /*at*/, const Motion& motion) {
 // The largest deviation of a link's tension from the catenary's, over the largest tension there.
 double catenary_tensions(const AnswerScene& at, const Motion& motion) {
   const Positions& x = at.scene.start.x;
-  const inextensible::Problem& problem = *at.scene.problem;
+  const Problem& problem = *at.scene.problem;
   const auto n = static_cast<int>(x.cols());
   const double weight = problem.mass()[0] * problem.gravity().norm();
   const auto vertical = [=](int k) { return weight * (k + 1 - 0.5 * n); };  // N, of link k

@@ -96,9 +96,8 @@ std::unique_ptr<Heartbeat, Unmap> shared_heartbeat() {
 long out_of_memory_kills() {
   std::ifstream statistics("/proc/vmstat");
   std::string key;
-  for (long value = 0; statistics >> key >> value;) {
+  for (long value = 0; statistics >> key >> value;)
     if (key == "oom_kill") return value;
-  }
   return 0;
 }
 

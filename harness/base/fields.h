@@ -62,13 +62,12 @@ struct FieldCodec {
   }
 
   static void read(const json& from, Value& value, bool nullable) {
-    if constexpr (std::is_same_v<Value, double>) {
+    if constexpr (std::is_same_v<Value, double>)
       value = nullable ? number_of(from) : from.get<double>();
-    } else if (nullable && from.is_null()) {
+    else if (nullable && from.is_null())
       value = {};
-    } else {
+    else
       from.get_to(value);
-    }
   }
 
   static nlohmann::ordered_json schema(const FieldTraits& traits) {

@@ -31,11 +31,10 @@ std::vector<std::string> alternatives(const std::string& expression) {
   re2::StringPiece rest(expression);
   for (std::string part; RE2::Consume(&rest, token, &part);) {
     open += part == "(" ? 1 : part == ")" ? -1 : 0;
-    if (part == "|" && open == 0) {
+    if (part == "|" && open == 0)
       list.emplace_back();
-    } else {
+    else
       list.back() += part;
-    }
   }
   return list;
 }

@@ -38,9 +38,8 @@ std::vector<double> ways_to_sum(const std::vector<int>& ranks, std::size_t n) {
   ways[0][0] = 1;
   for (const int rank : ranks) {
     const std::size_t r = rank;
-    for (std::size_t k = n; k > 0; --k) {
+    for (std::size_t k = n; k > 0; --k)
       for (std::size_t s = sums - 1; s >= r; --s) ways[k][s] += ways[k - 1][s - r];
-    }
   }
   return ways[n];
 }
@@ -109,9 +108,8 @@ Ratio ratio_of_times(const std::vector<double>& a, const std::vector<double>& b,
   if (const std::size_t c = critical_count(a.size(), b.size()); c > 0) {
     std::vector<double> quotients;
     quotients.reserve(a.size() * b.size());
-    for (const double x : a) {
+    for (const double x : a)
       for (const double y : b) quotients.push_back(x / y);
-    }
     std::sort(quotients.begin(), quotients.end());
     // With skewed samples the quotient of minima may lie outside the test's interval.
     ratio.low = std::min(quotients[c - 1], ratio.value);

@@ -1,18 +1,10 @@
 // C4, C7 to C10, C12 to C14 and C16: what works at all, residuals, shapes and strains.
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
 #include "harness/claims/claims.h"
 
 namespace harness::claims {
-
-using nlohmann::json;
 
 namespace {
 
@@ -38,11 +30,10 @@ Residuals iterated(const Point& p) {
 std::map<double, std::map<double, Point>> iterated_runs(const Points& points, const char* scene) {
   constexpr int enough = 10;  // samples of a run
   std::map<double, std::map<double, Point>> by_limit;
-  for (const Point& p : points.all) {
+  for (const Point& p : points.all)
     if (p.scene() == scene && p.sweep() == "step" && p.ok() &&
         p.contestant() == fast_projection.name && iterated(p).samples >= enough)
       by_limit[p.strain_limit()].try_emplace(p.step(), p);
-  }
   return by_limit;
 }
 
@@ -82,9 +73,8 @@ Verdict by_method(const Points& points, const char* scene, const std::vector<dou
     const Curve best = points.best(scene, "strain", method.name);
     for (const std::string& id : ids_of({best})) found.points.push_back(id);
     std::vector<Point> here;
-    for (const double limit : limits) {
+    for (const double limit : limits)
       if (const auto point = at(best, limit)) here.push_back(*point);
-    }
     if (here.size() < limits.size()) continue;
     const auto [so, words] = judge(here, method.words);
     verdicts.push_back(verdict_of(yes_if(so)));
@@ -239,9 +229,8 @@ Verdict garment_slip(const Points& points) {
 Verdict springs_stiffness(const Points& points) {
   Verdict found;
   std::map<double, std::vector<Point>> by_step;
-  for (const Point& p : points.all) {
+  for (const Point& p : points.all)
     if (calibrated(p)) by_step[p.step()].push_back(p);
-  }
   if (by_step.empty()) return {};
   const auto most_of = [](const auto& groups) {
     return *std::ranges::max_element(groups, {}, [](const auto& g) { return g.second.size(); });

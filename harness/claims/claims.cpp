@@ -4,19 +4,11 @@
 #include <set>
 
 #include "harness/analysis/plane.h"
-#include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/text.h"
 #include "harness/points/result_file.h"
 
 namespace harness::claims {
-
-using nlohmann::json;
-
-static void keep_faster(Curve& curve, double x, const Point& point) {
-  const auto [place, added] = curve.try_emplace(x, point);
-  if (!added && point.seconds() < place->second.seconds()) place->second = point;
-}
 
 Answer above(const Ratio& ratio, double threshold) {
   if (ratio.above(threshold)) return Answer::yes;
@@ -29,9 +21,8 @@ Answer above(const Slope& slope, double threshold) {
 }
 
 Answer all_of(const std::vector<Answer>& answers) {
-  for (const Answer one : {Answer::no, Answer::open}) {
+  for (const Answer one : {Answer::no, Answer::open})
     if (std::ranges::count(answers, one) > 0) return one;
-  }
   return Answer::yes;
 }
 
@@ -105,29 +96,29 @@ Curve Points::best(const std::string& scene, const std::string& sweep,
                    const std::string& contestant, double level,
                    std::optional<double> vertices) const {
   std::map<std::pair<double, std::string>, std::vector<Point>> places;
-  for (const Point& p : points_in(all, scene, sweep, vertices)) {
+  for (const Point& p : points_in(all, scene, sweep, vertices))
     if (roles.of(p.contestant()).row() == contestant)
       places[{sweep == "strain" ? p.strain_limit() : p.vertices(), p.contestant()}].push_back(p);
-  }
   Curve curve;
   for (const auto& [place, here] : places) {
-    if (const auto answer = fastest_of(here, level)) keep_faster(curve, place.first, *answer);
+    const auto answer = fastest_of(here, level);
+    if (!answer) continue;
+    const auto [kept, added] = curve.try_emplace(place.first, *answer);
+    if (!added && answer->seconds() < kept->second.seconds()) kept->second = *answer;
   }
   return curve;
 }
 
 std::optional<Point> at(const Curve& curve, double x) {
-  for (const auto& [key, point] : curve) {
+  for (const auto& [key, point] : curve)
     if (std::abs(key / x - 1) < 1e-9) return point;
-  }
   return {};
 }
 
 std::vector<std::string> ids_of(const std::vector<Curve>& curves) {
   std::vector<std::string> ids;
-  for (const Curve& curve : curves) {
+  for (const Curve& curve : curves)
     for (const auto& [at, point] : curve) ids.push_back(point.id());
-  }
   return ids;
 }
 
@@ -140,9 +131,8 @@ Verdict at_levels(const std::function<Verdict(double level)>& judge) {
     any = any || way.verdict != not_measured;
     append(all.measured,
            words + ": " + way.verdict + (way.measured.empty() ? "" : ", " + way.measured), "; ");
-    for (const std::string& id : way.points) {
+    for (const std::string& id : way.points)
       if (std::ranges::count(all.points, id) == 0) all.points.push_back(id);
-    }
   }
   if (!any) all.measured.clear();
   return all;
@@ -152,8 +142,6 @@ Verdict at_levels(const std::function<Verdict(double level)>& judge) {
 
 namespace harness {
 namespace {
-
-using nlohmann::json;
 
 // configs/claims.json has their words and rules.
 const std::map<std::string, claims::Judge*> judges{{"C1", claims::chain_time_over_strain},

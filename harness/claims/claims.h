@@ -1,17 +1,9 @@
 // The claims C1 to C16 of Goldenthal et al. 2007, each decided from result files by a stated rule.
 #pragma once
 
-#include <functional>
-#include <map>
-#include <nlohmann/json.hpp>
-#include <optional>
 #include <ostream>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "harness/analysis/measured_point.h"
-#include "harness/base/statistics.h"
 
 namespace harness::claims {
 
@@ -54,12 +46,12 @@ using Curve = std::map<double, Point>;  // by the value on the axis: a strain li
 // The points of some result files, which must outlive this. Points in several files count once;
 // runs with a step controller do not count.
 struct Points {
-  explicit Points(const std::vector<nlohmann::json>& results);
+  explicit Points(const std::vector<json>& results);
 
   std::vector<Point> all;
   bool repeated = false;  // two files have a point
   ContestantRoles roles;
-  std::vector<const nlohmann::json*> matrix, freedom, same_frame;  // of stability sweeps
+  std::vector<const json*> matrix, freedom, same_frame;  // of stability sweeps
 
   // The best points of a contestant within a level of error, over the axis of a sweep ("strain" or
   // "resolution"). The faster of tuned and default settings counts, so that tuning
@@ -102,12 +94,12 @@ struct ClaimVerdict : claims::Verdict {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ClaimVerdict, id, statement, verdict, measured, rule)
 
 // Throws UsageError for a result of --untimed, whose times say nothing.
-void check_timed(const nlohmann::json& result, const std::string& name = "a result");
+void check_timed(const json& result, const std::string& name = "a result");
 
 // results: documents of schemas inextensible-bench/1 and inextensible-stability/1. Where several
 // have a point, the first one's counts; a verdict that the last one's would change is undecided.
 // Throws UsageError for incomplete documents.
-std::vector<ClaimVerdict> judge_claims(const std::vector<nlohmann::json>& results);
+std::vector<ClaimVerdict> judge_claims(const std::vector<json>& results);
 
 void print_claims(std::ostream& out, const std::vector<ClaimVerdict>& claims);
 void print_claims_markdown(std::ostream& out, const std::vector<ClaimVerdict>& claims);

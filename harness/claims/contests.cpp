@@ -1,12 +1,4 @@
 // C1 to C3, C5, C6, C11 and C15: which method is fast, how its time grows, and what its steps take.
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <map>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "harness/base/text.h"
 #include "harness/claims/claims.h"
@@ -33,9 +25,8 @@ Slope slope_of(const Curve& curve) {
 // Ratios of a's seconds to b's by the value on the axis, where both have a point.
 std::vector<std::pair<double, Ratio>> ratios_of(const Curve& a, const Curve& b) {
   std::vector<std::pair<double, Ratio>> ratios;
-  for (const auto& [place, point] : a) {
+  for (const auto& [place, point] : a)
     if (const auto other = at(b, place)) ratios.emplace_back(place, ratio(point, *other));
-  }
   return ratios;
 }
 
@@ -195,14 +186,12 @@ Verdict chain_speed(const Points& points) {
 
 Verdict drape_time_over_strain(const Points& points) {
   std::map<double, int, std::greater<>> sizes;
-  for (const Point& p : points.all) {
+  for (const Point& p : points.all)
     if (p.scene() == "drape" && p.sweep() == "strain") ++sizes[p.vertices()];
-  }
   return at_levels([&](double level) {
     Verdict found;
-    for (const auto& size : sizes) {
+    for (const auto& size : sizes)
       if (found.verdict == not_measured) found = drape_over_strain(points, level, size.first);
-    }
     return found;
   });
 }
@@ -211,10 +200,9 @@ Verdict drape_time_over_resolution(const Points& points) {
   return at_levels([&](double level) -> Verdict {
     const Curve fast = points.best("drape", "resolution", fast_projection.name, level);
     std::map<std::string, Curve> others;
-    for (const PaperMethod& method : all_paper_methods) {
+    for (const PaperMethod& method : all_paper_methods)
       if (method.name != fast_projection.name)
         others[method.words] = points.best("drape", "resolution", method.name, level);
-    }
     std::string details;
     std::vector<Answer> sizes;
     for (const auto& [vertices, point] : fast) {

@@ -4,7 +4,6 @@
 #include <initializer_list>
 #include <iostream>
 
-#include "harness/base/json.h"
 #include "harness/base/text.h"
 #include "harness/run/sweep.h"
 
@@ -108,7 +107,6 @@ Action verb(const Command& command) {
   VERB(film, false, "render a scene as stills or a film, or export it for ParaView and Blender")  \
   VERB(choose, false, "recommend a solver and a step for a scene, after a minute of measuring")   \
   VERB(check, false, "test what every solver must fulfil, and say where to look if one does not") \
-  VERB(budget, false, "strain and error of each method within a frame budget")                    \
   VERB(claims, false, "decide the paper's claims from result files")                              \
   VERB(results, false, "write tables of result files in Markdown (docs/results.md)")              \
   VERB(compare, false,                                                                            \

@@ -51,9 +51,8 @@ struct Check {
   int run() const {
     const auto wanted = solver_pattern(solver);
     bool conform = true;
-    for (const auto& backend : inextensible::backends()) {
+    for (const auto& backend : backends())
       if (wanted->matches(backend.name)) conform = conforms_to_all(backend.name) && conform;
-    }
     return conform ? success : unexpected_outcome;
   }
 };

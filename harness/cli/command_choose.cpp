@@ -99,10 +99,8 @@ Contestants contestants_for(const std::string& given, const SceneType& type,
   if (given.empty()) return all;
   const auto wanted = solver_pattern(given);
   std::erase_if(all, [&](const Contestant& c) { return !wanted->matches(c.name); });
-  for (const std::string& name : alternatives(given)) {
-    if (inextensible::find_backend(name) && find_contestant(all, name) == all.end())
-      all.push_back({name, name});
-  }
+  for (const std::string& name : alternatives(given))
+    if (find_backend(name) && find_contestant(all, name) == all.end()) all.push_back({name, name});
   if (all.empty())
     throw UsageError("no solver that --solver '" + shortened(given) + "' matches competes on " +
                      type.name + "; one that is named in full is tried there");

@@ -12,14 +12,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Options of the verbs that compare: a gate, and reports beside the table on stdout.
+// Options of the verbs that compare: a gate, and a report beside the table on stdout.
 struct CompareOptions {
-  std::string gate, junit, markdown;
+  std::string gate, junit;
 
   void declare(const Command& to) {
     to.option("--gate", gate, "what passes; default: configs/gate.json", "FILE");
     to.option("--junit", junit, "also write JUnit XML, one test case a point", "FILE");
-    to.option("--markdown", markdown, "also write the table in Markdown", "FILE");
   }
 
   Gate given_gate() const {
@@ -27,18 +26,15 @@ struct CompareOptions {
   }
 
   // Throws UsageError for a report that cannot be written.
-  void check_reports() const {
-    for (const std::string& path : {junit, markdown}) {
-      if (!path.empty()) check_writable(path);
-    }
+  void check_report() const {
+    if (!junit.empty()) check_writable(junit);
   }
 
-  // Prints the comparison and writes the reports. Returns the exit code: a failure outranks a
-  // regression. name: JUnit suite and Markdown heading. undecided: message for ambiguous times.
+  // Prints the comparison and writes the report. Returns the exit code: a failure outranks a
+  // regression. name: JUnit suite. undecided: message for ambiguous times.
   int report(const Comparison& comparison, const std::string& name,
              const std::string& undecided) const {
     if (!junit.empty()) write_atomically(junit, junit_xml(comparison, name));
-    if (!markdown.empty()) write_atomically(markdown, markdown_table(comparison, name));
     print_comparison(std::cout, comparison);
     if (comparison.any(is_failure)) return unexpected_outcome;
     if (comparison.any(is_regression)) return regression;
@@ -62,7 +58,7 @@ struct Compare : CompareOptions {
   int run() {
     const Gate passes = given_gate();
     const ComparedResult before = read_compared({base}), after = read_compared(next);
-    check_reports();
+    check_report();
     try {
       return report(compare(before, after, passes), "bench compare",
                     "times of best points differ, but too few runs or too noisy a machine leave "
@@ -238,7 +234,7 @@ struct Ab : CompareOptions {
 
   int run() {
     const Gate passes = gate_of();
-    check_reports();
+    check_report();
     for (Program* program : {&before, &after}) {
       program->path = program_named(program->path);
       program->check();

@@ -1,6 +1,4 @@
 // bench export and bench judge: scenes for other programs, and what these made of them.
-#include <algorithm>
-#include <filesystem>
 
 #include "harness/analysis/measured_point.h"
 #include "harness/cli/command.h"
@@ -8,7 +6,6 @@
 #include "harness/points/context.h"
 #include "harness/points/result_file.h"
 #include "harness/points/schema.h"
-#include "harness/run/measure_point.h"
 #include "harness/scenes/scene_folder.h"
 
 namespace harness {
@@ -35,7 +32,7 @@ struct Export : SceneOptions {
     if (!std::filesystem::create_directory(partial, error))
       throw FileError(out, "make folder", error.message());
     try {
-      nlohmann::json said = about(*type, parameters);
+      json said = about(*type, parameters);
       if (reference) said["reference"] = "reference.npz";
       write_scene(partial, type->build(parameters), said);
     } catch (const std::invalid_argument& impossible) {  // parameters that make no scene
@@ -77,12 +74,9 @@ struct JudgeVerb {
     limits.references = ReferenceFolder::usual();
     limits.scene = &built;
     PointResult point = run_point(given, limits);
-    if (limit == 0) {  // the tightest of the usual limits that it keeps
-      PointSpec spec = given;
-      for (const double usual : {0.1, 0.05, 0.02, 0.01, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4})
-        if (point.measures.max_strain <= usual) spec.strain_limit = usual;
-      point = run_point(spec, limits);
-    }
+    // Without a limit: the tightest of the usual ones that it keeps, which changes nothing else.
+    for (const double usual : {0.1, 0.05, 0.02, 0.01, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4})
+      if (limit == 0 && point.measures.max_strain <= usual) point.spec.strain_limit = usual;
     static_cast<Samples&>(point) = {};
     if (seconds > 0 && point.ok()) {
       point.samples = {seconds / built.duration};
@@ -118,10 +112,8 @@ struct JudgeVerb {
       throw UsageError("'" + scene + "' is no scene that bench export wrote: no scene.json there");
     if (name.empty()) name = "trajectory";
     const auto type = find_scene(scene);
-    PointSpec spec;
-    spec.sweep = "strain";
-    spec.scene = type->name;
-    spec.scene_parameters = complete_parameters(*type, {});
+    PointSpec spec{
+        .sweep = "strain", .scene = type->name, .scene_parameters = complete_parameters(*type, {})};
     spec.resolution = static_cast<int>(spec.scene_parameters.at(type->resolution));
     std::tie(spec.vertices, spec.constraints) = type->counts(spec.scene_parameters);
     spec.contestant = spec.solver = name;
@@ -131,7 +123,7 @@ struct JudgeVerb {
     spec.strain_limit = limit > 0 ? limit : 0.1;
     const std::string label = name + " (time as reported)";
     try {
-      const inextensible::Backend rows[] = {playback(name.c_str(), label.c_str(), trajectory)};
+      const Backend rows[] = {playback(name.c_str(), label.c_str(), trajectory)};
       inextensible::add_backends(rows);
     } catch (const std::invalid_argument& error) {
       throw UsageError(std::string("--name: ") + error.what());
@@ -142,14 +134,14 @@ struct JudgeVerb {
     if (!out.empty()) {
       Suite suite;
       suite.name = suite.profile = "judged";
-      SweepSpec& sweep = suite.sweeps.emplace_back();
-      sweep.sweep = spec.sweep;
-      sweep.scene = spec.scene;
-      sweep.contestants = {{name, name}};
-      sweep.limits = {point.spec.strain_limit};
-      sweep.resolutions = {spec.resolution};
-      sweep.coarsest = sweep.finest = spec.step;
-      nlohmann::json context = machine_context();
+      suite.sweeps = {{.sweep = spec.sweep,
+                       .scene = spec.scene,
+                       .contestants = {{name, name}},
+                       .limits = {point.spec.strain_limit},
+                       .resolutions = {spec.resolution},
+                       .coarsest = spec.step,
+                       .finest = spec.step}};
+      json context = machine_context();
       context["timed"] = seconds > 0;
       context["selection"] = {{"solver", ""}, {"filter", ""}, {"exclude", ""}};
       const auto document = result_document(context, suite, typed, true, {point});

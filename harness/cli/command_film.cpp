@@ -71,7 +71,7 @@ struct Film : SceneOptions {
     (void)solver_pattern(solver);                           // refuses what is no solver
     for (const std::string& part : alternatives(solver)) {  // in the order given
       const Pattern wanted("--solver", part);
-      for (const auto& backend : inextensible::backends())
+      for (const auto& backend : backends())
         if (wanted.matches(backend.name) &&
             find_contestant(film.solvers, backend.name) == film.solvers.end())
           film.solvers.push_back({backend.name, backend.name});

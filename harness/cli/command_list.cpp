@@ -54,8 +54,8 @@ json metrics() {
 }
 
 const std::vector<List> lists{
-    list("solvers", inextensible::backends,
-         [](const inextensible::Backend& b) {
+    list("solvers", backends,
+         [](const Backend& b) {
            return json{{"name", b.name},
                        {"label", b.label},
                        {"summary", b.summary},
@@ -121,11 +121,10 @@ void print_rows(const json& rows) {
     std::cout << ": " << (unit.empty() ? "" : unit + ": ");
     for (const char* key : {"summary", "description", "meaning"}) std::cout << text_of(row, key);
     std::cout << (letter.empty() ? "" : " (" + letter + " in figures)") << '\n';
-    for (const char* key : {"settings", "parameters"}) {
+    for (const char* key : {"settings", "parameters"})
       for (const json& each : row.value(key, json::array()))
         std::cout << "      " << text_of(each, "name") << " = " << text_of(each, "default") << "  ("
                   << text_of(each, "meaning") << ")\n";
-    }
   }
 }
 

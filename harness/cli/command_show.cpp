@@ -1,6 +1,6 @@
-// bench show, budget, claims, results, report and plot: result files printed and drawn.
+// bench show, claims, results, report and plot: result files printed and drawn.
 
-#include "harness/analysis/findings.h"
+#include "harness/analysis/plane.h"
 #include "harness/answers/answer.h"
 #include "harness/claims/claims.h"
 #include "harness/cli/command.h"
@@ -21,9 +21,8 @@ std::vector<NamedResult> read_all(const Words& files, ResultKinds kinds) {
 
 std::vector<json> documents_of(const std::vector<NamedResult>& files, bool (*wanted)(const json&)) {
   std::vector<json> documents;
-  for (const NamedResult& file : files) {
+  for (const NamedResult& file : files)
     if (wanted(file.document)) documents.push_back(file.document);
-  }
   return documents;
 }
 
@@ -51,17 +50,38 @@ std::string head_of(const json& document, const std::string& file) {
 struct Show {
   Words files;
   bool as_json = false, all = false;
+  double frame = 0;  // ms; 0: any
 
   void declare(const Command& command) {
     add_results(command, files, "result files; several count as one");
     command.flag("--json", as_json,
                  "as JSON: which contestant is fastest within each strain limit and error");
     command.flag("--all", all, "every contestant, and how runs failed");
+    command.option("--frame", frame,
+                   "only runs of which 99 % of the frames of 1/60 s take at most so many ms", "MS",
+                   Bounds::positive());
+  }
+
+  // What remains was measured within the frame budget.
+  void keep_frames(json& document) const {
+    json kept = json::array();
+    for (const json& point : document.value("points", json())) {
+      const auto frames = samples_of(point).frame_times;
+      if (std::ranges::any_of(frames, [this](const FrameTime& at) {
+            return at.rate == frame_rates.back() && at.slow <= 1e-3 * frame;
+          }))
+        kept.push_back(point);
+    }
+    if (kept.empty())
+      throw UsageError("'" + files.front() + "' has no run with frames of at most " +
+                       number_text(frame) + " ms; runs of less than a second have none");
+    document["points"] = kept;
   }
 
   int run() {
     if (as_json && all) throw UsageError("--json has all contestants already: leave out --all");
-    const json document = read_as_one(files);
+    json document = read_as_one(files);
+    if (frame > 0) keep_frames(document);
     const std::string& name = files.front();
     if (as_json) {
       if (!is_sweep(document))
@@ -74,32 +94,6 @@ struct Show {
     }
     std::cout << fitted(head_of(document, name), output_columns())
               << text_of_result(document, name, all);
-    return success;
-  }
-};
-
-struct Budget {
-  Words files;
-  Numbers ms{1, 4, 16};
-
-  void declare(const Command& command) {
-    add_results(command, files, "result files");
-    command.option(
-        "--ms", ms,
-        "milliseconds of one core for a frame of 1/60 s, one or several; default: 1,4,16", "MS",
-        Bounds::positive());
-  }
-
-  int run() {
-    Numbers seconds = ms;
-    for (double& budget : seconds) budget *= 1e-3;
-    const auto sweeps = documents_of(read_all(files, ResultKinds::all), is_sweep);
-    std::vector<analysis::BudgetTable> tables;
-    if (!sweeps.empty()) tables = analysis::budget_tables(joined(sweeps), seconds);
-    if (tables.empty())
-      throw UsageError("'" + files.front() +
-                       "' has no times of frames; sweeps of at least one second have them");
-    print_budgets(std::cout, tables);
     return success;
   }
 };
@@ -227,7 +221,6 @@ struct Plot {
 }  // namespace
 
 Action show_verb(const Command& command) { return verb<Show>(command); }
-Action budget_verb(const Command& command) { return verb<Budget>(command); }
 Action claims_verb(const Command& command) { return verb<Claims>(command); }
 Action results_verb(const Command& command) { return verb<Results>(command); }
 Action report_verb(const Command& command) { return verb<Report>(command); }

@@ -15,7 +15,7 @@ std::vector<std::string> chosen_solvers(const std::string& text, const SweepSpec
   std::vector<std::string> solvers;
   const Contestants all = competitors(*find_scene(scene.scene), scene.scene_parameters);
   const Pattern expression("--solver", text.empty() ? ".*" : text);
-  for (const auto& backend : inextensible::backends()) {
+  for (const auto& backend : backends()) {
     const bool competes = std::ranges::count(all, backend.name, &Contestant::solver) > 0;
     if ((competes || backend.name == text) && matches(expression, backend.name) &&
         !tunable_numbers(backend).empty())
@@ -29,7 +29,7 @@ using Entries = std::vector<TunedEntry>;
 void write_entries(const std::string& file, Entries& entries) {
   std::ranges::stable_sort(entries, {}, [kinds = scene_kinds()](const TunedEntry& entry) {
     return std::pair(std::ranges::find(kinds, entry.kind) - kinds.begin(),
-                     inextensible::find_backend(entry.solver));
+                     find_backend(entry.solver));
   });
   write_atomically(file, document_text(tuned_document(entries)));
 }
@@ -149,9 +149,8 @@ struct Tune {
     std::cout
         << "kind           solver                             size  limit   gain   settings\n";
     for (const SweepSpec& on : chosen) {
-      for (const std::string& name : chosen_solvers(solver, on)) {
+      for (const std::string& name : chosen_solvers(solver, on))
         if (tune_one(on, name, run, entries)) write_entries(file, entries);
-      }
     }
     std::cout << "\nwritten:\n" << file << std::endl;
     return success;

@@ -107,11 +107,10 @@ void load(const Words& plugins) {
     const OutputToError no_output;
     for (const std::string& file : plugins) load_plugin(file);
   }
-  for (const Plugin& plugin : loaded_plugins()) {
+  for (const Plugin& plugin : loaded_plugins())
     if (!plugin.optimized)
       std::cerr << "bench: plug-in '" << plugin.file
                 << "' was compiled without optimization: its times are meaningless\n";
-  }
 }
 
 int failed(const std::string& why, ExitCode code) {
@@ -254,9 +253,8 @@ void Command::require(std::initializer_list<const char*> names) const {
 }
 
 std::string Command::one_typed() const {
-  for (const CLI::Option* option : app_->get_options()) {
+  for (const CLI::Option* option : app_->get_options())
     if (option->get_group() == group_ && option->count() > 0) return option->get_name();
-  }
   return "";
 }
 

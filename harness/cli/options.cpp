@@ -135,10 +135,9 @@ std::vector<std::string> profiles() { return {"quick", "default", "pairs", "pape
 
 std::optional<Pattern> solver_pattern(const std::string& text, const Contestants& contestants) {
   if (text.empty()) return std::nullopt;
-  std::vector<std::string> names = names_of(inextensible::backends());
-  for (const Contestant& c : contestants) {
+  std::vector<std::string> names = names_of(backends());
+  for (const Contestant& c : contestants)
     if (!c.own_name()) names.push_back(c.name);
-  }
   const Pattern whole("--solver", text);
   for (const std::string& part : alternatives(text)) {
     const Pattern expression("--solver", part);
@@ -192,9 +191,8 @@ Suite edited_suite(const std::string& path, const SweepOptions& options) {
   put_in_scene(sweeps, options);
   for (json& sweep : sweeps) {
     if (sweep["sweep"] != options.sweep) continue;
-    if (sweep["scene"] == options.scene) {
+    if (sweep["scene"] == options.scene)
       for (const auto& [name, value] : given) sweep["scene_parameters"][name] = value;
-    }
     if (!options.limits.empty()) {
       if (options.sweep == "resolution" && options.limits.size() > 1)
         throw UsageError("--limit: a resolution sweep has one");
@@ -249,10 +247,8 @@ Suite load_suite(const SweepOptions& given) {
   if (options.finest_error > 0) suite.finest_error = options.finest_error;
   if (options.seed >= 0) suite.seed = static_cast<std::uint64_t>(options.seed);
   // A solver that is not a contestant takes part only if named in full.
-  if (const auto* backend = inextensible::find_backend(options.solver);
-      backend && !backend->contestant) {
+  if (const auto* backend = find_backend(options.solver); backend && !backend->contestant)
     for (SweepSpec& sweep : suite.sweeps) sweep.contestants = {{options.solver, options.solver}};
-  }
   Contestants left = contestants_of(suite);
   if (find_contestant(left, suite.same) == left.end()) suite.same.clear();
   return suite;

@@ -2,7 +2,6 @@
 #include <fstream>
 #include <set>
 
-#include "harness/analysis/findings.h"
 #include "harness/answers/answer.h"
 #include "harness/base/child_process.h"
 #include "harness/base/clock.h"
@@ -222,13 +221,12 @@ bool is_sweep(const json& document) { return document.at("schema") == "inextensi
 
 std::string text_of_result(const json& document, const std::string& name, bool all) {
   std::ostringstream text;
-  if (is_answers(document)) {
+  if (is_answers(document))
     print_answers(text, document);
-  } else if (is_sweep(document)) {
+  else if (is_sweep(document))
     print_sweep(text, document, name, all);
-  } else {
+  else
     print_outcomes(text, document);
-  }
   return fitted(text.str(), output_columns());
 }
 

@@ -28,11 +28,10 @@ void note_counters(const ComparedPoint& base, const ComparedPoint& next, const G
     result.reasons.push_back(reason);
   }
   if (gate.counter_rule == CounterRule::inform) return;
-  if (rose) {
+  if (rose)
     result.change = Change::slower;
-  } else if (fell) {
+  else if (fell)
     result.change = gate.counter_rule == CounterRule::exact ? Change::changed : Change::faster;
-  }
 }
 
 void note_errors(const ComparedPoint& base, const ComparedPoint& next, const Gate& gate,
@@ -197,19 +196,17 @@ Comparability comparability(const ComparedResult& base, const ComparedResult& ne
   Comparability can;
   if (!agree(known(base) && known(next) ? "counters_fingerprint" : "fingerprint"))
     can.no_counters = "compiler, flags or libraries differ";
-  if (!gate.times) {
+  if (!gate.times)
     can.no_times = "the gate does not count them";
-  } else if (base.baseline || next.baseline) {
+  else if (base.baseline || next.baseline)
     can.no_times = "a baseline has none";
-  } else if (!base.context.value("timed", true) || !next.context.value("timed", true)) {
+  else if (!base.context.value("timed", true) || !next.context.value("timed", true))
     can.no_times = "one of them was made with --untimed";
-  } else if (!agree("cpu_model") || !agree("num_cpus")) {
+  else if (!agree("cpu_model") || !agree("num_cpus"))
     can.no_times = "the machines differ";
-  }
   can.drift = drift_between(base.context, next.context);
-  for (const ComparedResult* result : {&base, &next}) {
+  for (const ComparedResult* result : {&base, &next})
     if (const auto pair = noise_of(result->context)) can.noise = std::max(can.noise, pair->q95);
-  }
   return can;
 }
 

@@ -182,7 +182,5 @@ Comparison compare_in_pairs(std::vector<PairedPoint> points, int pairs, int conf
 void print_comparison(std::ostream& out, const Comparison& comparison);
 // One test case per point; regressions and failures fail. name: the suite's.
 std::string junit_xml(const Comparison& comparison, const std::string& name);
-// For a pull request or a job summary.
-std::string markdown_table(const Comparison& comparison, const std::string& title);
 
 }  // namespace harness

@@ -1,7 +1,6 @@
 // Reads gates, results and baselines; writes baselines.
 #include "harness/base/files.h"
 
-#include "harness/base/json.h"
 #include "harness/base/text.h"
 #include "harness/compare/comparison.h"
 #include "harness/points/context.h"
@@ -23,11 +22,10 @@ json read_any(const std::string& path) {
     throw UsageError("'" + path +
                      "' is the result of a stability sweep, which cannot be compared: it has its "
                      "expected outcomes in the program");
-  if (schema == baseline_schema) {
+  if (schema == baseline_schema)
     check_schema(document, "baseline", path);
-  } else {
+  else
     check_result(document, path);
-  }
   return document;
 }
 
@@ -64,11 +62,10 @@ void add_file(ComparedResult& to, const json& document, const std::string& path)
     to.context = context;
     return;
   }
-  for (const char* key : {"fingerprint", "counters_fingerprint"}) {
+  for (const char* key : {"fingerprint", "counters_fingerprint"})
     if (to.context.value(key, "") != context.value(key, ""))
       throw UsageError("'" + to.path + "' and '" + path +
                        "' are not of one build on one machine, so they are not one result");
-  }
   for (const json& sweep : context.at("suite").at("sweeps"))
     to.context["suite"]["sweeps"].push_back(sweep);
 }
@@ -92,9 +89,8 @@ Gate parse_gate(const std::string& text, const std::string& path) {
   gate.counter_rule = rules.at(counters.value("rule", "exact"));
   gate.counters = counters.value("names", gate.counters);
   if (document.contains("errors")) gate.errors.clear();
-  for (const char* name : {"max_strain", "trajectory", "energy_drift"}) {
+  for (const char* name : {"max_strain", "trajectory", "energy_drift"})
     if (errors.contains(name)) gate.errors[name] = errors.at(name);
-  }
   gate.error_floor = errors.value("floor", gate.error_floor);
   return gate;
 }
@@ -105,10 +101,9 @@ ComparedPoint compared_point(const json& p) {
   point.fingerprint = p.value("counters_fingerprint", "");
   point.counters = p.at("work");
   if (p.at("max_strain").is_number()) point.errors["max_strain"] = p.at("max_strain");
-  for (const char* name : errors_of_runs) {
+  for (const char* name : errors_of_runs)
     if (const json error = p.at("error").value(name, json()); error.is_number())
       point.errors[name] = error;
-  }
   point.spec =
       p.contains("spec")  // of a baseline
           ? p.at("spec").get<std::string>()

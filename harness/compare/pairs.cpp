@@ -93,11 +93,10 @@ Comparison compare_in_pairs(std::vector<PairedPoint> points, int pairs, int conf
     point.after.samples.clear();
   }
   run_pairs(again, confirming, run);
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  for (std::size_t i = 0; i < points.size(); ++i)
     if (first[i] != Change::same)
       comparison.points[i] =
           without_false_same(judge_again(points[i], first[i], gate, can), points[i], gate);
-  }
   return comparison;
 }
 

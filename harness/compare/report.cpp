@@ -1,4 +1,4 @@
-// The printers of a comparison: terminal, JUnit XML, Markdown.
+// The printers of a comparison: terminal and JUnit XML.
 #include <unordered_map>
 
 #include "harness/base/table.h"
@@ -22,10 +22,9 @@ std::vector<PointChange> rows_of(const Comparison& comparison) {
 
 std::string counts(const Comparison& comparison) {
   std::string text;
-  for (std::size_t i = 0; i < change_names.size(); ++i) {
+  for (std::size_t i = 0; i < change_names.size(); ++i)
     if (const std::size_t n = comparison.count(static_cast<Change>(i)); n > 0)
       append(text, std::to_string(n) + " " + change_names[i]);
-  }
   return std::to_string(comparison.points.size()) + " points: " + text;
 }
 
@@ -42,31 +41,17 @@ std::vector<std::string> all_notes(const Comparison& comparison) {
   return notes;
 }
 
-std::string escaped(const std::string& text, const std::unordered_map<char, std::string>& by,
-                    char control) {
-  std::string result;
-  for (const char c : text) {
-    if (const auto found = by.find(c); found != by.end()) {
-      result += found->second;
-    } else {
-      result += static_cast<unsigned char>(c) < 0x20 ? control : c;
-    }
-  }
-  return result;
-}
-
 // Control characters have no place in XML 1.0, not even escaped.
 std::string xml(const std::string& text) {
-  return escaped(
-      text, {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\n', "&#10;"}}, '?');
-}
-
-// Nothing ends the line, or is a tag or emphasis.
-std::string cell(const std::string& text) {
-  return escaped(
-      text,
-      {{'*', "\\*"}, {'_', "\\_"}, {'`', "\\`"}, {'\\', "\\\\"}, {'<', "&lt;"}, {'&', "&amp;"}},
-      ' ');
+  static const std::unordered_map<char, std::string> escapes{
+      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\n', "&#10;"}};
+  std::string result;
+  for (const char c : text)
+    if (const auto found = escapes.find(c); found != escapes.end())
+      result += found->second;
+    else
+      result += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
+  return result;
 }
 
 // "drape/icd/n:225/..." of sweep strain: class strain.drape.icd.
@@ -110,20 +95,6 @@ std::string junit_xml(const Comparison& comparison, const std::string& name) {
   return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites" + totals +
          ">\n<testsuite name=\"" + xml(name) + "\"" + totals + ">\n" + cases.str() +
          "</testsuite>\n</testsuites>\n";
-}
-
-std::string markdown_table(const Comparison& comparison, const std::string& title) {
-  std::ostringstream text;
-  text << "### " << cell(title) << "\n\n" << counts(comparison) << '\n';
-  Table table{{"change", "sweep", "point", "what"}, {}, 0};
-  for (const PointChange& row : rows_of(comparison)) {
-    const std::string bold = fails(row.change) ? "**" : "";
-    table.rows.push_back({bold + cell(to_string(row.change)) + bold, cell(row.sweep), cell(row.id),
-                          cell(row.text())});
-  }
-  if (!table.rows.empty()) print_markdown(text << '\n', table);
-  for (const std::string& note : all_notes(comparison)) text << "\nNote: " << cell(note) << '\n';
-  return text.str();
 }
 
 }  // namespace harness

@@ -1,9 +1,9 @@
-#include <cstdint>
 #include <cstdio>
 #include <sstream>
 
 #include "harness/base/files.h"
 #include "harness/film/film.h"
+#include "harness/judge/trajectory.h"
 #include "harness/scenes/mesh_file.h"
 
 namespace harness {
@@ -13,9 +13,9 @@ namespace {
 struct Part {
   std::string name;  // of its files
   std::vector<std::array<int, 3>> triangles;
-  std::vector<inextensible::Edge> edges;
+  std::vector<Edge> edges;
   bool stays;  // does not move: one frame is enough
-  std::function<inextensible::Positions(std::size_t frame)> at;
+  std::function<Positions(std::size_t frame)> at;
 
   std::string obj_file(std::size_t frame) const {
     char number[24] = "";
@@ -24,9 +24,9 @@ struct Part {
   }
 };
 
-template <class Number>
-void append(std::string& bytes, Number number) {
-  bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
+template <class Value>
+void append(std::string& bytes, const Value& value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
 // The run must outlive the parts.
@@ -43,16 +43,12 @@ std::vector<Part> parts_of(const Recording& recording, const FilmRun& take,
   return parts;
 }
 
-// The header: "POINTCACHE2\0", version 1, points, first frame, frames per sample, samples.
 std::string pc2_bytes(const Part& part, std::size_t frames) {
-  std::string bytes("POINTCACHE2\0", 12);
-  append(bytes, std::int32_t{1});
-  append(bytes, static_cast<std::int32_t>(part.at(0).cols()));
-  append(bytes, 0.0F);
-  append(bytes, 1.0F);
-  append(bytes, static_cast<std::int32_t>(frames));
+  std::string bytes;
+  append(bytes, PointCacheHead{.points = static_cast<std::int32_t>(part.at(0).cols()),
+                               .samples = static_cast<std::int32_t>(frames)});
   for (std::size_t i = 0; i < frames; ++i) {
-    const inextensible::Positions x = part.at(i);
+    const Positions x = part.at(i);
     for (Eigen::Index k = 0; k < x.size(); ++k) append(bytes, static_cast<float>(x(k)));
   }
   return bytes;

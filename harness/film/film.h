@@ -3,14 +3,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <array>
-#include <cstdint>
-#include <functional>
-#include <string>
-#include <vector>
 
 #include "harness/points/contestant.h"
-#include "harness/scenes/scene.h"
 #include "solvers/problem/triangle_collider.h"
 
 namespace harness {
@@ -27,20 +21,20 @@ struct FilmSpec {
 struct FilmRun {
   std::string solver, label;
   double strain_limit = 0;
-  double step = 0;                              // s
-  std::string detail;                           // why it ended early; empty: it did not
-  std::string energy_gained;                    // why it fails the energy check; empty: it passes
-  std::vector<inextensible::Positions> frames;  // the first is the start
-  std::vector<double> largest_strain;           // of each frame, as delivered
-  double smallest_step = 0;                     // s; a step that is refused is halved
-  std::vector<double> seconds;                  // wall time of each frame but the first
+  double step = 0;                     // s
+  std::string detail;                  // why it ended early; empty: it did not
+  std::string energy_gained;           // why it fails the energy check; empty: it passes
+  std::vector<Positions> frames;       // the first is the start
+  std::vector<double> largest_strain;  // of each frame, as delivered
+  double smallest_step = 0;            // s; a step that is refused is halved
+  std::vector<double> seconds;         // wall time of each frame but the first
 };
 
 struct Recording {
   FilmSpec spec;
   Scene scene;
-  inextensible::TriangleMesh body;             // empty: no obstacle
-  std::vector<inextensible::Pose> body_poses;  // at each frame; empty: it does not move
+  inextensible::TriangleMesh body;  // empty: no obstacle
+  std::vector<Pose> body_poses;     // at each frame; empty: it does not move
   std::vector<FilmRun> takes;
 };
 
@@ -50,7 +44,7 @@ std::size_t frames_in(const FilmSpec& spec);
 // Springs get the stiffness that keeps the limit. Calls told after each frame. Throws Interrupted.
 Recording record(const FilmSpec& spec, const std::function<void(const FilmRun&)>& told);
 
-inextensible::Positions body_at(const Recording& recording, std::size_t frame);
+Positions body_at(const Recording& recording, std::size_t frame);
 
 struct View {
   Eigen::Vector3d centre, eye;         // m
@@ -76,15 +70,15 @@ std::array<std::uint8_t, 3> shade(const Eigen::Vector3d& rgb);  // linear to sRG
 
 // What a picture shows at one time; the recording must outlive it.
 struct Shot {
-  const Recording& recording;     // a scene without triangles is drawn as a rope
-  inextensible::Positions cloth;  // m
+  const Recording& recording;  // a scene without triangles is drawn as a rope
+  Positions cloth;             // m
   // Which sides of each triangle are yarns: 1 from corner 0 to 1, 2 from 1 to 2, 4 from 2 to 0.
   std::vector<std::uint8_t> yarns = {};
-  Eigen::Matrix3Xd colours = {};      // of each vertex, linear
-  inextensible::Positions body = {};  // m; empty: none
-  double yarn = 0;                    // half the width of a line, or the radius of a rope, m
-  double yarn_shade = 0;              // how much darker a line is: 0 to 1
-  double thickness = 0;               // depth inside the body at which cloth is still visible, m
+  Eigen::Matrix3Xd colours = {};  // of each vertex, linear
+  Positions body = {};            // m; empty: none
+  double yarn = 0;                // half the width of a line, or the radius of a rope, m
+  double yarn_shade = 0;          // how much darker a line is: 0 to 1
+  double thickness = 0;           // depth inside the body at which cloth is still visible, m
 };
 
 struct Pixels {

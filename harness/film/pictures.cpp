@@ -1,6 +1,4 @@
-#include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <future>
 #include <mutex>
 #include <numbers>
@@ -8,18 +6,14 @@
 #include <set>
 #include <thread>
 
-#include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
-#include "harness/base/json.h"
 #include "harness/film/film.h"
 #include "harness/judge/mechanics.h"
 
 namespace harness {
 
 using Eigen::Vector3d;
-using inextensible::Positions;
-using nlohmann::json;
 using Box = Eigen::AlignedBox3d;
 
 namespace {
@@ -44,8 +38,7 @@ Eigen::Vector3d strain_colour(double over_limit) {
 }
 
 // Colour of each vertex, by the largest strain of its edges.
-Eigen::Matrix3Xd colours_of(const inextensible::Problem& problem, const inextensible::Positions& x,
-                            double limit) {
+Eigen::Matrix3Xd colours_of(const Problem& problem, const Positions& x, double limit) {
   std::vector<double> strains, most(static_cast<std::size_t>(x.cols()), 0);
   append_strains(problem, x, strains);
   for (std::size_t k = 0; k < strains.size(); ++k) {

@@ -1,38 +1,28 @@
-#include <algorithm>
-#include <cmath>
 
-#include "harness/base/clock.h"
-#include "harness/base/interrupt.h"
 #include "harness/base/text.h"
 #include "harness/film/film.h"
 #include "harness/judge/drive.h"
 #include "harness/judge/energy.h"
 #include "harness/judge/mechanics.h"
 #include "harness/run/measure_point.h"
-#include "solvers/registry.h"
 
 namespace harness {
 namespace {
 
-using inextensible::State;
-
 // The settings given, and for springs the stiffness that a sweep would find.
-inextensible::Settings calibrated(const FilmSpec& spec, const Contestant& contestant, double limit,
-                                  double step) {
-  const inextensible::Backend& backend = *inextensible::find_backend(contestant.solver);
+Settings calibrated(const FilmSpec& spec, const Contestant& contestant, double limit, double step) {
+  const Backend& backend = *find_backend(contestant.solver);
   const int size = static_cast<int>(spec.parameters.at(find_scene(spec.scene)->resolution));
-  inextensible::Settings settings = contestant.settings_for(size, limit);
-  if (backend.strain_control != inextensible::StrainControl::stiffness ||
-      settings.contains("stiffness"))
+  Settings settings = contestant.settings_for(size, limit);
+  if (backend.strain_control != StrainControl::stiffness || settings.contains("stiffness"))
     return settings;
-  PointSpec point;
-  point.sweep = "strain";
-  point.scene = spec.scene;
-  point.scene_parameters = spec.parameters;
-  point.solver = contestant.solver;
-  point.settings = settings;
-  point.strain_limit = limit;
-  point.step = step;
+  const PointSpec point{.sweep = "strain",
+                        .scene = spec.scene,
+                        .scene_parameters = spec.parameters,
+                        .solver = contestant.solver,
+                        .settings = settings,
+                        .strain_limit = limit,
+                        .step = step};
   const PointResult found = run_point(point, {.interrupted = interrupted, .timed = false});
   if (found.stiffness) settings["stiffness"] = *found.stiffness;
   return settings;
@@ -45,7 +35,7 @@ constexpr std::int64_t spare_tries = 1000, tries_per_step = 100;
 constexpr std::int64_t spare_iterations = 500'000, iterations_per_step = 10'000;
 
 // Why a run must give up after this many steps; "": it need not.
-std::string too_much_work(const inextensible::WorkCounters& work, long steps) {
+std::string too_much_work(const WorkCounters& work, long steps) {
   const std::int64_t tries = work.steps + work.rejected_steps;
   if (tries > spare_tries + tries_per_step * steps)
     return concat(tries, " tries of steps for ", steps, " steps");
@@ -69,10 +59,9 @@ FilmRun take_of(const FilmSpec& spec, const Scene& scene, const Contestant& cont
       std::max(1, static_cast<int>(std::ceil(1 / (rate * spec.step) - 1e-9)));
   take.step = take.smallest_step = 1 / (rate * steps_per_frame);
   const auto settings = calibrated(spec, contestant, limit, take.step);
-  const inextensible::Backend& backend = *inextensible::find_backend(contestant.solver);
+  const Backend& backend = *find_backend(contestant.solver);
   State state = start_of(scene, backend, take.step);
-  const auto stepper =
-      inextensible::make_stepper(contestant.solver, scene.problem, {limit, 1, settings, &state});
+  const auto stepper = make_stepper(contestant.solver, scene.problem, {limit, 1, settings, &state});
   EnergyRecord energy(scene, backend.velocities);
   Clock::time_point begin;
   const auto keep = [&](const State& at) {
@@ -111,11 +100,10 @@ FilmRun take_of(const FilmSpec& spec, const Scene& scene, const Contestant& cont
 
 }  // namespace
 
-inextensible::Positions body_at(const Recording& recording, std::size_t frame) {
-  const inextensible::Pose pose =
-      recording.body_poses.empty() ? inextensible::Pose{} : recording.body_poses.at(frame);
+Positions body_at(const Recording& recording, std::size_t frame) {
+  const Pose pose = recording.body_poses.empty() ? Pose{} : recording.body_poses.at(frame);
   const auto& vertices = recording.body.vertices;
-  inextensible::Positions x(3, vertices.size());
+  Positions x(3, vertices.size());
   std::transform(vertices.begin(), vertices.end(), x.colwise().begin(), pose);
   return x;
 }
@@ -130,15 +118,13 @@ Recording record(const FilmSpec& spec, const std::function<void(const FilmRun&)>
   const Scene& scene = recording.scene;
   const auto* body = dynamic_cast<const inextensible::TriangleCollider*>(scene.problem->collider());
   if (body) recording.body = body->mesh();
-  if (const auto& motion = scene.problem->body_motion()) {
+  if (const auto& motion = scene.problem->body_motion())
     for (std::size_t i = 0; i < frames_in(spec); ++i)
       recording.body_poses.push_back(
           motion(scene.start.time + static_cast<double>(i) / spec.frames_per_second));
-  }
-  for (const double limit : spec.strain_limits) {
+  for (const double limit : spec.strain_limits)
     for (const Contestant& contestant : spec.solvers)
       recording.takes.push_back(take_of(spec, scene, contestant, limit, told));
-  }
   return recording;
 }
 

@@ -1,12 +1,7 @@
 #include <embree3/rtcore.h>
 
-#include <algorithm>
-#include <cmath>
 #include <initializer_list>
-#include <limits>
-#include <memory>
 #include <numeric>
-#include <stdexcept>
 #include <type_traits>
 
 #include "harness/film/film.h"
@@ -16,7 +11,6 @@ namespace harness {
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
-using inextensible::Positions;
 
 namespace {
 

@@ -6,7 +6,6 @@
 namespace harness {
 
 using Eigen::Vector3d;
-using inextensible::Positions;
 using inextensible::TriangleMesh;
 
 namespace {
@@ -50,7 +49,7 @@ double thickness_of(const TriangleMesh& mesh) {
 
 }  // namespace
 
-Crossings::Crossings(const inextensible::Problem& problem) : problem_(problem) {
+Crossings::Crossings(const Problem& problem) : problem_(problem) {
   const auto* body = dynamic_cast<const inextensible::TriangleCollider*>(problem.collider());
   if (!body) return;
   body_ = &body->mesh();
@@ -60,20 +59,20 @@ Crossings::Crossings(const inextensible::Problem& problem) : problem_(problem) {
 
 int Crossings::vertices() const { return static_cast<int>(std::ranges::count(crossed_, char{1})); }
 
-Positions Crossings::in_body_frame(const inextensible::State& state) const {
+Positions Crossings::in_body_frame(const State& state) const {
   Positions x = state.x;
-  if (const inextensible::BodyMotion& motion = problem_.body_motion()) {
-    const inextensible::Pose back = motion(state.time).inverse();
+  if (const BodyMotion& motion = problem_.body_motion()) {
+    const Pose back = motion(state.time).inverse();
     for (auto column : x.colwise()) column = back(column);
   }
   return x;
 }
 
-void Crossings::before(const inextensible::State& state) {
+void Crossings::before(const State& state) {
   if (body_) from_ = in_body_frame(state);
 }
 
-void Crossings::after(const inextensible::State& state) {
+void Crossings::after(const State& state) {
   if (!body_) return;
   const Positions to = in_body_frame(state);
   constexpr double nearly = 0.8;

@@ -3,8 +3,6 @@
 // a bulge or a corner of the body leaves through a face that looks a similar way, and is none.
 #pragma once
 
-#include <vector>
-
 #include "harness/scenes/scene.h"
 #include "solvers/problem/triangle_collider.h"
 
@@ -13,22 +11,22 @@ namespace harness {
 class Crossings {
  public:
   // Without a body made of triangles it sees nothing, and costs nothing.
-  explicit Crossings(const inextensible::Problem& problem);
+  explicit Crossings(const Problem& problem);
 
   // Before and after each step.
-  void before(const inextensible::State& state);
-  void after(const inextensible::State& state);
+  void before(const State& state);
+  void after(const State& state);
 
   int vertices() const;  // that have passed through so far
 
  private:
-  inextensible::Positions in_body_frame(const inextensible::State& state) const;
+  Positions in_body_frame(const State& state) const;
   bool passes_through(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
 
-  const inextensible::Problem& problem_;
+  const Problem& problem_;
   const inextensible::TriangleMesh* body_ = nullptr;
   double thickness_ = 0;  // m, about the least of the body
-  inextensible::Positions from_;
+  Positions from_;
   std::vector<char> crossed_;
 };
 

@@ -2,29 +2,23 @@
 #pragma once
 
 #include <concepts>
-#include <functional>
-#include <limits>
-#include <optional>
 
 #include "harness/base/clock.h"
 #include "harness/base/interrupt.h"
-#include "harness/scenes/scene.h"
-#include "solvers/registry.h"
+#include "harness/points/point.h"
 #include "solvers/stepping/step_controller.h"
 #include "solvers/systems/constrained_acceleration.h"
 
 namespace harness {
 
 // Where a method begins to take steps of h: half a step back if its velocities are mid-step ones.
-inline inextensible::State start_from(const inextensible::Problem& problem,
-                                      const inextensible::State& state,
-                                      const inextensible::Backend& backend, double h) {
-  const bool half_step = backend.velocities == inextensible::Velocities::half_step;
+inline State start_from(const Problem& problem, const State& state, const Backend& backend,
+                        double h) {
+  const bool half_step = backend.velocities == Velocities::half_step;
   return half_step ? inextensible::start_half_step_back(problem, state, h) : state;
 }
 // The same from the scene's start, where the scene asks for that.
-inline inextensible::State start_of(const Scene& scene, const inextensible::Backend& backend,
-                                    double h) {
+inline State start_of(const Scene& scene, const Backend& backend, double h) {
   return scene.staggered ? start_from(*scene.problem, scene.start, backend, h) : scene.start;
 }
 
@@ -33,8 +27,6 @@ struct Pace {
   long steps;        // of a drive
   int halvings = 0;  // how often a step that is refused may be halved
 };
-
-inline constexpr int usual_halvings = inextensible::StepController::Settings{}.most_halvings;
 
 struct DriveLimits {
   double timeout = std::numeric_limits<double>::infinity();  // s of wall time, since `begin`
@@ -46,29 +38,29 @@ struct DriveLimits {
 struct DriveState {
   enum class End { arrived, stopped, refused, timed_out };
   End end = End::arrived;
-  long steps = 0;                        // of the pace, whole ones
-  bool whole = true;                     // the last one taken ends such a step
-  int taken = 0;                         // whole or halved, since `before`
-  inextensible::StepResult result = {};  // of the last one
-  double last, smallest, next;           // s, of those taken and of the next one
+  long steps = 0;               // of the pace, whole ones
+  bool whole = true;            // the last one taken ends such a step
+  int taken = 0;                // whole or halved, since `before`
+  StepResult result = {};       // of the last one
+  double last, smallest, next;  // s, of those taken and of the next one
 };
 
 // Observes a drive; a derived class hides the functions that it needs.
 struct Observer {
   // How many steps to take before `after`. May change the state.
-  int before(inextensible::State& /*state*/, const DriveState& /*driven*/) { return 1; }
+  int before(State& /*state*/, const DriveState& /*driven*/) { return 1; }
   // After each of them; after all of them, and after a refusal.
-  void each(const inextensible::State& /*state*/, const DriveState& /*driven*/) {}
-  void all(const inextensible::State& /*state*/, const DriveState& /*driven*/) {}
+  void each(const State& /*state*/, const DriveState& /*driven*/) {}
+  void all(const State& /*state*/, const DriveState& /*driven*/) {}
   // Not after a refusal. Whether to go on.
-  bool after(const inextensible::State& /*state*/, const DriveState& /*driven*/) { return true; }
+  bool after(const State& /*state*/, const DriveState& /*driven*/) { return true; }
 };
 
 // Takes the steps of a pace from a state on, up to a refusal, which leaves the state as it was. The
 // limits are looked at after each `after`. Throws Interrupted.
 template <std::derived_from<Observer> O>
-DriveState drive(inextensible::Stepper& stepper, inextensible::State& state, const Pace& pace,
-                 O& observer, const DriveLimits& limits = {}) {
+DriveState drive(Stepper& stepper, State& state, const Pace& pace, O& observer,
+                 const DriveLimits& limits = {}) {
   using inextensible::StepController;
   std::optional<StepController> controller;
   if (pace.halvings > 0)
@@ -90,38 +82,35 @@ DriveState drive(inextensible::Stepper& stepper, inextensible::State& state, con
       driven.smallest = controller->smallest();
       driven.next = controller->next();
     }
-    if (!driven.result) {
+    if (!driven.result)
       driven.end = DriveState::End::refused;
-    } else if (!observer.after(state, driven)) {
+    else if (!observer.after(state, driven))
       driven.end = DriveState::End::stopped;
-    } else if (limits.interrupted && limits.interrupted()) {
+    else if (limits.interrupted && limits.interrupted())
       throw Interrupted();
-    } else if (driven.steps < pace.steps && since(limits.begin) > limits.timeout) {
+    else if (driven.steps < pace.steps && since(limits.begin) > limits.timeout)
       driven.end = DriveState::End::timed_out;
-    } else {
+    else
       continue;
-    }
     break;
   }
   return driven;
 }
 
-inline DriveState drive(inextensible::Stepper& stepper, inextensible::State& state,
-                        const Pace& pace, const DriveLimits& limits = {}) {
+inline DriveState drive(Stepper& stepper, State& state, const Pace& pace,
+                        const DriveLimits& limits = {}) {
   Observer none;
   return drive(stepper, state, pace, none, limits);
 }
 
 // With a function as the observer: called after each step, it returns whether to go on.
-template <std::predicate<const inextensible::State&, const DriveState&> After>
-DriveState drive(inextensible::Stepper& stepper, inextensible::State& state, const Pace& pace,
-                 After after, const DriveLimits& limits = {}) {
+template <std::predicate<const State&, const DriveState&> After>
+DriveState drive(Stepper& stepper, State& state, const Pace& pace, After after,
+                 const DriveLimits& limits = {}) {
   struct Calling : Observer {
     After& call;
     explicit Calling(After& a) : call(a) {}
-    bool after(const inextensible::State& now, const DriveState& driven) {
-      return call(now, driven);
-    }
+    bool after(const State& now, const DriveState& driven) { return call(now, driven); }
   } observer(after);
   return drive(stepper, state, pace, observer, limits);
 }

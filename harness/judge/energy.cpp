@@ -6,34 +6,34 @@
 
 namespace harness {
 
-bool energy_can_only_fall(const inextensible::Problem& problem) {
+bool energy_can_only_fall(const Problem& problem) {
   return (problem.collider() || problem.has_drag()) && !problem.body_motion();
 }
 
-EnergyRecord::EnergyRecord(const Scene& scene, inextensible::Velocities velocities)
+EnergyRecord::EnergyRecord(const Scene& scene, Velocities velocities)
     : problem_(*scene.problem), velocities_(velocities) {
   begin(scene.start, energy_scale(scene));
 }
 
-void EnergyRecord::begin(const inextensible::State& state, double scale) {
+void EnergyRecord::begin(const State& state, double scale) {
   scale_ = scale;
   start_ = total_energy(problem_, state);
   before_ = last_ = {};
   window_ = {};
 }
 
-std::optional<double> EnergyRecord::after(const inextensible::State& state, double h) {
+std::optional<double> EnergyRecord::after(const State& state, double h) {
   before_ = last_;
   last_ = {before_.step + 1, state.time, h, inextensible::potential_energy(problem_, state.x),
            inextensible::kinetic_energy(problem_, state.v)};
-  if (velocities_ == inextensible::Velocities::whole_step) return settle(last_, last_.kinetic);
+  if (velocities_ == Velocities::whole_step) return settle(last_, last_.kinetic);
   if (before_.step == 0) return {};
   return settle(before_, (h * before_.kinetic + before_.h * last_.kinetic) / (h + before_.h));
 }
 
 // No velocity follows the last step: its own, or what the last two foretell if that is less.
 std::optional<double> EnergyRecord::finish() {
-  if (velocities_ == inextensible::Velocities::whole_step || last_.step == 0) return {};
+  if (velocities_ == Velocities::whole_step || last_.step == 0) return {};
   double kinetic = last_.kinetic;
   if (before_.step > 0)
     kinetic += std::min(0.0, (last_.kinetic - before_.kinetic) * last_.h / (last_.h + before_.h));

@@ -9,28 +9,23 @@
 // every step is zero.
 #pragma once
 
-#include <optional>
-#include <string>
-
-#include "harness/points/measures.h"
-#include "harness/scenes/scene.h"
-#include "solvers/methods/backend.h"
+#include "harness/points/point.h"
 
 namespace harness {
 
 // Something dissipates, and nothing that moves does work.
-bool energy_can_only_fall(const inextensible::Problem& problem);
+bool energy_can_only_fall(const Problem& problem);
 
 class EnergyRecord {
  public:
   // From the scene's start. Its problem must outlive this.
-  EnergyRecord(const Scene& scene, inextensible::Velocities velocities);
+  EnergyRecord(const Scene& scene, Velocities velocities);
 
   // What energy is compared with from here on. scale: J, what gains are divided by.
-  void begin(const inextensible::State& state, double scale);
+  void begin(const State& state, double scale);
   // After each accepted step of h seconds, and after the last one. Gives (E - E_0) / scale at the
   // end of the step, or of the one before it, if it has just become known.
-  std::optional<double> after(const inextensible::State& state, double h);
+  std::optional<double> after(const State& state, double h);
   std::optional<double> finish();
 
   double gain() const { return gain_; }  // the largest so far; unknown at first
@@ -43,7 +38,7 @@ class EnergyRecord {
   // step wherever an edge meets its limit.
   double rise() const { return rise_; }
   double scale() const { return scale_; }
-  const inextensible::Problem& problem() const { return problem_; }
+  const Problem& problem() const { return problem_; }
 
  private:
   struct Instant {
@@ -52,9 +47,9 @@ class EnergyRecord {
   };
   double settle(const Instant& at, double kinetic);
 
-  const inextensible::Problem& problem_;
+  const Problem& problem_;
   double scale_;
-  inextensible::Velocities velocities_;
+  Velocities velocities_;
   double start_ = 0;
   Instant before_, last_;
   double gain_ = unknown, gain_time_ = unknown, drift_ = unknown;

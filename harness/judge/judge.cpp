@@ -9,9 +9,6 @@
 
 namespace harness {
 
-using inextensible::Positions;
-using inextensible::State;
-
 namespace {
 
 constexpr double time_tolerance = 1e-9;  // s; states add up their steps
@@ -29,7 +26,7 @@ Judge::Judge(const Scene& scene, const Options& options)
       energy_(scene, options.velocities),
       crossings_(*scene.problem) {
   options_.sample_every = std::max(1, options_.sample_every);
-  if (options_.residual) probe_.emplace();
+  if (options_.residuals) probe_.emplace();
 }
 
 void Judge::before(const State& state, double h) {
@@ -84,7 +81,6 @@ void Judge::add_errors(Measures& measures) const {
 double Judge::after(const Positions& filtered, const State& state, double h, bool counts) {
   const StrainRange range = strain_range(*scene_.problem, filtered);
   running_.max_strain = std::max(running_.max_strain, range.most);
-  running_.max_stretch = std::max(running_.max_stretch, range.stretch);
   if (scene_.problem->collider())
     raise(running_.max_strain_after_collision, strain_range(*scene_.problem, state.x).most);
   energy_.after(state, h);
@@ -104,7 +100,7 @@ void Judge::look_at_marks(const State& state, double h) {
   if (!state.x.allFinite() || !state.v.allFinite()) return;
   for (const Scene::Mark& mark : scene_.marks)
     running_.sag[mark.name] += h * (mark.height - state.x(1, mark.vertex));
-  const inextensible::Problem& problem = *scene_.problem;
+  const Problem& problem = *scene_.problem;
   squared_speed_ += h * 2 * inextensible::kinetic_energy(problem, state.v) / problem.total_mass();
   marked_time_ += h;
 }
@@ -112,44 +108,24 @@ void Judge::look_at_marks(const State& state, double h) {
 void Judge::sample(const Positions& filtered, const State& state) {
   const auto& problem = *scene_.problem;
   append_strains(problem, filtered, strains_);
-  if (problem.collider()) append_strains(problem, state.x, delivered_);
   kinetic_sum_ += inextensible::kinetic_energy(problem, state.v);
   ++samples_;
-  for (const auto& mirror : scene_.mirrors) {
-    const Eigen::Matrix3d reflect =
-        Eigen::Matrix3d::Identity() - 2 * mirror.normal * mirror.normal.transpose();
-    const Positions off = reflect * state.x - state.x(Eigen::all, mirror.image);
-    raise(running_.symmetry_defect, off.colwise().norm().maxCoeff() / scene_.size);
-  }
 }
 
 Measures Judge::finish() {
   energy_.finish();
   Measures measures = running_;
   measures.energy_gain = energy_.gain();
-  measures.energy_gain_time = energy_.gain_time();
   if (scene_.conserves_energy) measures.energy_drift = energy_.drift();
   if (energy_can_only_fall(*scene_.problem)) measures.energy_rise = energy_.rise();
   if (samples_ > 0) {
     measures.kinetic_energy_mean = kinetic_sum_ / samples_;
     measures.rms_strain = root_mean_square(strains_);
     measures.p99_strain = quantile(strains_, 0.99);
-    const bool moved = scene_.problem->collider();  // else what was measured is what is delivered
-    measures.delivered_strain_rms = moved ? root_mean_square(delivered_) : measures.rms_strain;
-    measures.delivered_strain_p99 = moved ? quantile(delivered_, 0.99) : measures.p99_strain;
   }
   if (marked_time_ > 0) {
     for (auto& [name, sag] : measures.sag) sag /= marked_time_;
     measures.rest_speed = std::sqrt(squared_speed_ / marked_time_);
-  }
-  if (!measures.residuals.empty()) {
-    const auto count = static_cast<double>(measures.residuals.size());
-    measures.residual_first = measures.residual_last = 0;
-    for (const auto& residual : measures.residuals) {
-      measures.residual_first += residual.first / count;
-      measures.residual_last += residual.last / count;
-    }
-    if (!options_.residual_series) measures.residuals.clear();
   }
   if (!options_.reference) {
     measures.unknown_because = "no reference of this scene, size and parameters";
@@ -167,8 +143,8 @@ Measures Judge::finish() {
   return measures;
 }
 
-void ResidualProbe::iterate(const inextensible::EdgeConstraints& edges, int j,
-                            const inextensible::Positions& x, const Eigen::VectorXd& multipliers) {
+void ResidualProbe::iterate(const inextensible::EdgeConstraints& edges, int j, const Positions& x,
+                            const Eigen::VectorXd& multipliers) {
   if (!watching_) return;
   edges_ = &edges;
   iterations_ = j;
@@ -185,7 +161,7 @@ void ResidualProbe::iterate(const inextensible::EdgeConstraints& edges, int j,
 double ResidualProbe::mean_residual(const Iterate& at) const {
   Eigen::Matrix3Xd u(3, at.multipliers.size());
   edges_->gradient(at.x, u);
-  inextensible::Positions f = at.x - x0_;
+  Positions f = at.x - x0_;
   edges_->apply(u, -at.multipliers, f);
   return f.colwise().norm().mean();
 }

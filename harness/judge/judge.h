@@ -1,16 +1,10 @@
-// The harness judges: strain, energy, symmetry and errors, from positions and off the clock.
+// The harness judges: strain, energy and errors, from positions and off the clock.
 #pragma once
-
-#include <memory>
-#include <optional>
 
 #include "harness/judge/crossings.h"
 #include "harness/judge/energy.h"
 #include "harness/judge/reference.h"
-#include "harness/points/point.h"
-#include "harness/scenes/scene.h"
 #include "solvers/problem/edge_constraints.h"
-#include "solvers/stepping/stepper.h"
 
 namespace harness {
 
@@ -29,12 +23,12 @@ class ResidualProbe final : public inextensible::IterateObserver {
   // the step needed no iteration.
   std::optional<ResidualSample> residual(double time);
 
-  void iterate(const inextensible::EdgeConstraints& edges, int j, const inextensible::Positions& x,
+  void iterate(const inextensible::EdgeConstraints& edges, int j, const Positions& x,
                const Eigen::VectorXd& multipliers) override;
 
  private:
   struct Iterate {
-    inextensible::Positions x;
+    Positions x;
     Eigen::VectorXd multipliers;
   };
   double mean_residual(const Iterate& at) const;
@@ -42,7 +36,7 @@ class ResidualProbe final : public inextensible::IterateObserver {
   bool watching_ = false;
   const inextensible::EdgeConstraints* edges_ = nullptr;  // the solver's
   int iterations_ = 0;
-  inextensible::Positions x0_;
+  Positions x0_;
   Iterate first_, last_;
 };
 
@@ -51,9 +45,8 @@ class Judge {
   struct Options {
     int sample_every = 1;  // full statistics are taken at every n-th step
     std::shared_ptr<const Reference> reference = nullptr;
-    inextensible::Velocities velocities = inextensible::Velocities::half_step;  // the method's
-    bool residual = false;         // is measured where the solver shows its iterates (observer())
-    bool residual_series = false;  // the residual over time too, not its means alone
+    Velocities velocities = Velocities::half_step;  // the method's
+    bool residuals = false;  // are recorded where the solver shows its iterates (observer())
   };
   Judge(const Scene& scene, const Options& options);
 
@@ -62,27 +55,25 @@ class Judge {
 
   // Before and after each accepted step of h seconds. filtered: positions before the collision
   // filter. `after` returns the step's largest |strain|, infinite if a position is not finite.
-  void before(const inextensible::State& state, double h);
+  void before(const State& state, double h);
   // counts: whether the step counts towards sample_every (a step controller's parts do not).
-  double after(const inextensible::Positions& filtered, const inextensible::State& state, double h,
-               bool counts = true);
+  double after(const Positions& filtered, const State& state, double h, bool counts = true);
   // After the last step.
   Measures finish();
   const EnergyRecord& energy() const { return energy_; }
   const Crossings& crossings() const { return crossings_; }
 
  private:
-  void sample(const inextensible::Positions& filtered, const inextensible::State& state);
-  void look_at_marks(const inextensible::State& state, double h);
-  void compare(const inextensible::State& state);
+  void sample(const Positions& filtered, const State& state);
+  void look_at_marks(const State& state, double h);
+  void compare(const State& state);
   void add_errors(Measures& measures) const;
 
   const Scene& scene_;
   Options options_;
   int steps_ = 0;
   Measures running_;
-  std::vector<double> strains_;    // |strain| of every edge at every sampled instant
-  std::vector<double> delivered_;  // the same after the collision filter; with a collider only
+  std::vector<double> strains_;  // |strain| of every edge at every sampled instant
   EnergyRecord energy_;
   Crossings crossings_;
   double kinetic_sum_ = 0;
@@ -90,8 +81,8 @@ class Judge {
   int samples_ = 0;
 
   std::optional<ResidualProbe> probe_;
-  inextensible::State start_;  // of the step, where a sample lies inside it
-  std::size_t next_ = 0;       // of the reference's samples
+  State start_;           // of the step, where a sample lies inside it
+  std::size_t next_ = 0;  // of the reference's samples
   double moved_squares_ = 0, reference_moved_squares_ = 0;  // distances from the start
 };
 

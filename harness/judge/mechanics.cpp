@@ -9,10 +9,6 @@
 namespace harness {
 namespace {
 
-using inextensible::Positions;
-using inextensible::Problem;
-using inextensible::State;
-
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -66,7 +62,7 @@ double total_energy(const Problem& problem, const State& state) {
 }
 
 double energy_scale(const Scene& scene) {
-  const inextensible::Problem& problem = *scene.problem;
+  const Problem& problem = *scene.problem;
   return problem.total_mass() * problem.gravity().norm() * scene.size +
          inextensible::kinetic_energy(problem, scene.start.v);
 }

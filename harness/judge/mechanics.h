@@ -2,8 +2,6 @@
 // energy and shape are computed for the judge, the hard cases and `bench check`.
 #pragma once
 
-#include <vector>
-
 #include "harness/scenes/scene.h"
 
 namespace harness {
@@ -18,21 +16,18 @@ struct StrainRange {
   std::size_t edge = 0;  // of the largest |strain|, the first of several
 };
 // x: 3 x vertices, m.
-StrainRange strain_range(const inextensible::Problem& problem, const inextensible::Positions& x);
+StrainRange strain_range(const Problem& problem, const Positions& x);
 
 // Appends every edge's |strain|.
-void append_strains(const inextensible::Problem& problem, const inextensible::Positions& x,
-                    std::vector<double>& strains);
+void append_strains(const Problem& problem, const Positions& x, std::vector<double>& strains);
 
 // kg m/s, of the velocities v (3 x vertices, m/s).
-Eigen::Vector3d linear_momentum(const inextensible::Problem& problem,
-                                const inextensible::Positions& v);
+Eigen::Vector3d linear_momentum(const Problem& problem, const Positions& v);
 // kg m^2/s, about the centre of mass.
-Eigen::Vector3d angular_momentum(const inextensible::Problem& problem,
-                                 const inextensible::State& state);
+Eigen::Vector3d angular_momentum(const Problem& problem, const State& state);
 
 // J, kinetic and potential.
-double total_energy(const inextensible::Problem& problem, const inextensible::State& state);
+double total_energy(const Problem& problem, const State& state);
 // J, weight times size, and the kinetic energy at the start: what energies are compared with.
 double energy_scale(const Scene& scene);
 
@@ -40,6 +35,6 @@ double energy_scale(const Scene& scene);
 void raise(double& figure, double value);
 
 // m^2, of the shadow on a horizontal plane within `reach` (m) of the y axis, on pixels x pixels.
-double shadow_area(const Scene& scene, const inextensible::Positions& x, double reach, int pixels);
+double shadow_area(const Scene& scene, const Positions& x, double reach, int pixels);
 
 }  // namespace harness

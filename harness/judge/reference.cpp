@@ -1,16 +1,12 @@
 #include "harness/judge/reference.h"
 
 #include <algorithm>
-#include <filesystem>
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/text.h"
 
 namespace harness {
-
-using inextensible::Positions;
-using nlohmann::json;
 
 namespace {
 
@@ -36,10 +32,9 @@ std::string mismatch(const Reference& r) {
   if (complete_parameters(*type, r.parameters) != r.parameters)
     return "'scene_parameters' must hold every parameter of the scene";
   const int vertices = type->counts(r.parameters).first;
-  for (const Positions& x : r.positions) {
+  for (const Positions& x : r.positions)
     if (x.cols() != vertices)
       return concat("positions of ", x.cols(), " vertices, the scene has ", vertices);
-  }
   const std::size_t times = r.times.size();
   const bool agree =
       r.gap.size() == times && r.gap_max.size() == times && r.positions.size() <= times;
@@ -115,9 +110,8 @@ int Reference::samples_at(double level) const {
 
 double Reference::known_until(double level) const {
   double until = 0;
-  for (std::size_t i = 0; i < positions.size(); ++i) {
+  for (std::size_t i = 0; i < positions.size(); ++i)
     if (sure_gaps * gap[i] <= level) until = times[i];
-  }
   return until;
 }
 

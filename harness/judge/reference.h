@@ -3,19 +3,13 @@
 // stored as JSON (schema inextensible-reference/2) and is never a contestant.
 #pragma once
 
-#include <map>
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
-
 #include "harness/base/npz.h"
 #include "harness/points/measures.h"
 #include "harness/scenes/scene.h"
 
 namespace harness {
 
-using Path = std::vector<inextensible::Positions>;  // at sample times, m
+using Path = std::vector<Positions>;  // at sample times, m
 
 struct Reference {
   std::string scene;
@@ -44,11 +38,9 @@ struct Reference {
 };
 
 // Mass-weighted RMS distance of two sets of positions over the scene's size.
-double rms_distance(const Scene& scene, const inextensible::Positions& x,
-                    const inextensible::Positions& y);
+double rms_distance(const Scene& scene, const Positions& x, const Positions& y);
 // The largest distance of any vertex, over the scene's size.
-double max_distance(const Scene& scene, const inextensible::Positions& x,
-                    const inextensible::Positions& y);
+double max_distance(const Scene& scene, const Positions& x, const Positions& y);
 
 constexpr double sample_interval = 0.04;  // s; every step of the usual ladders meets it
 std::vector<double> sample_times(double duration);
@@ -57,17 +49,17 @@ std::vector<double> sample_times(double duration);
 // the defaults (but duration), or mesh-9f3c...-n1.json of a scene made of files.
 std::string reference_name(const std::string& scene, const SceneParameters& complete);
 
-nlohmann::json to_json(const Reference& reference);
+json to_json(const Reference& reference);
 // Throws UsageError, naming the file, for anything that is not a reference.
 // scene: whose it is, by the name under which its files are found here; "": the document's own.
 Reference read_reference(const std::string& path, const std::string& scene = "");
 // The same from a parsed document; `path` is for messages.
-Reference reference_of(const nlohmann::json& document, const std::string& path,
+Reference reference_of(const json& document, const std::string& path,
                        const std::string& scene = "");
 
 // A path as rows of coordinates, rounded to this many parts of a metre; 0: not rounded.
-nlohmann::json rows_of(const Path& path, double per_metre = 0);
-Path path_of(const nlohmann::json& rows);
+json rows_of(const Path& path, double per_metre = 0);
+Path path_of(const json& rows);
 // The same as an array of frames x vertices x 3. Throws UsageError for another shape.
 NumberArray array_of(const Path& path);
 Path path_of(const NumberArray& array, const std::string& file);
@@ -89,7 +81,7 @@ class ReferenceFolder {
   // Adds a reference that has no file.
   void put(std::shared_ptr<const Reference> reference);
   // What a result file says of each reference that its errors were measured against.
-  nlohmann::json summaries() const;
+  json summaries() const;
 
  private:
   std::vector<std::string> folders_;

@@ -3,20 +3,13 @@
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 
-#include <algorithm>
-
-#include "harness/base/clock.h"
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
 #include "harness/judge/drive.h"
 #include "harness/judge/mechanics.h"
 #include "harness/scenes/pendulum.h"
-#include "solvers/registry.h"
 
 namespace harness {
-
-using inextensible::Positions;
-using inextensible::State;
 
 namespace {
 
@@ -31,18 +24,18 @@ struct Route {
   std::string solver;
   double limit;  // of strain
   int order;     // of the error that Richardson's rule takes away
-  inextensible::Settings settings = {};
+  Settings settings = {};
 
   std::string name() const { return solver + ", strain limit " + number_text(limit); }
 };
 
-std::unique_ptr<inextensible::Stepper> stepper_of(const Route& route, const Scene& scene) {
-  return inextensible::make_stepper(route.solver, scene.problem, {route.limit, 1, route.settings});
+std::unique_ptr<Stepper> stepper_of(const Route& route, const Scene& scene) {
+  return make_stepper(route.solver, scene.problem, {route.limit, 1, route.settings});
 }
 
 // This is the one place that names methods: which to trust for a scene is the maintainer's
 // judgement, which no property of a row can replace.
-const inextensible::Settings some_passes{{"min_iterations", 1.0}, {"smoothing_sweeps", 30.0}};
+const Settings some_passes{{"min_iterations", 1.0}, {"smoothing_sweeps", 30.0}};
 // Second route of a pendulum, beside its angles.
 const Route smooth_route{"rattle", 1e-12, 2};
 // Where a collider makes kinks neither route is better than first order.
@@ -52,7 +45,7 @@ const Route contact_route{"rattle", 1e-9, 1};
 const Route singular_route{"fast_projection@bdf2", 1e-6, 1, some_passes};
 // Forces at the end of a step are for scenes that come to rest: what a limit of strain leaves to
 // chance has to be small beside the creep of cloth that hangs by friction.
-const inextensible::Settings one_projection{{"min_iterations", 1.0}};
+const Settings one_projection{{"min_iterations", 1.0}};
 const Route implicit_route{"fast_projection@bdf2", 1e-5, 1, one_projection};
 // Edges as stiff springs, solved with all other forces: strains of 1e-4 under the whole weight.
 constexpr double spring_stiffness = 1e4;  // over the weight
@@ -69,7 +62,7 @@ struct Routes {
 };
 
 Routes contact_routes(const Scene& scene, double h) {
-  const inextensible::Problem& problem = *scene.problem;
+  const Problem& problem = *scene.problem;
   if (problem.implicit_forces()) {
     const double weight = problem.total_mass() * problem.gravity().norm();
     Routes routes{implicit_route, {"icd", implicit_route.limit, 1, one_projection}, {}};
@@ -161,7 +154,7 @@ class ReferenceMaker {
                                     start, ", ", samples, " samples");
     const auto compute = [&] {
       const auto stepper = stepper_of(route, scene_);
-      State state = start_from(*scene_.problem, from, *inextensible::find_backend(route.solver), h);
+      State state = start_from(*scene_.problem, from, *find_backend(route.solver), h);
       const std::string words = route.solver + ", h = 1/" + number_text(std::round(1 / h)) + " s ";
       const long per_sample = std::lround(sample_interval / h);
       runs_.tell(words + "...");
@@ -332,7 +325,7 @@ class ReferenceMaker {
 
 }  // namespace
 
-RouteRuns::RouteRuns(Tell tell, const std::string& out, const nlohmann::json& header)
+RouteRuns::RouteRuns(Tell tell, const std::string& out, const json& header)
     : tell_(std::move(tell)), journal_(out) {
   if (!journal_->damage().empty())
     tell_(journal_->path() + ", " + journal_->damage() + ": what is damaged is run again");
@@ -346,7 +339,7 @@ RouteRuns::RouteRuns(Tell tell, const std::string& out, const nlohmann::json& he
 
 const RouteRun& RouteRuns::run(const std::string& name, const std::function<RouteRun()>& compute) {
   if (const auto known = known_.find(name); known != known_.end()) return known->second;
-  if (const nlohmann::json* kept = journal_ ? journal_->find(name) : nullptr)
+  if (const json* kept = journal_ ? journal_->find(name) : nullptr)
     return known_[name] = {path_of(kept->at("path")), kept->at("energy_drift").get<double>()};
   const RouteRun& run = known_[name] = compute();
   if (journal_)

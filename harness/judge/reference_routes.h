@@ -3,12 +3,6 @@
 // computation that was stopped goes on with the next one.
 #pragma once
 
-#include <functional>
-#include <map>
-#include <optional>
-#include <string>
-#include <utility>
-
 #include "harness/base/journal.h"
 #include "harness/judge/reference.h"
 
@@ -27,7 +21,7 @@ class RouteRuns {
   explicit RouteRuns(Tell tell) : tell_(std::move(tell)) {}
   // In a journal beside the reference's file `out`. header: what the runs depend on; kept runs of
   // another one are dropped. Throws UsageError if another process computes this reference.
-  RouteRuns(Tell tell, const std::string& out, const nlohmann::json& header);
+  RouteRuns(Tell tell, const std::string& out, const json& header);
 
   // The run of that name: a kept one, or what `compute` returns. The reference stays valid.
   const RouteRun& run(const std::string& name, const std::function<RouteRun()>& compute);

@@ -1,7 +1,5 @@
 #include "harness/judge/trajectory.h"
 
-#include <cstring>
-#include <filesystem>
 #include <numeric>
 
 #include "harness/base/errors.h"
@@ -13,9 +11,6 @@
 
 namespace harness {
 namespace {
-
-using inextensible::Positions;
-using inextensible::State;
 
 struct Frames {
   Path path;
@@ -31,18 +26,12 @@ Frames frames_of_npz(const std::string& path) {
   return frames;
 }
 
-// The header: "POINTCACHE2\0", version 1, points, first frame, frames per sample, samples.
 Frames frames_of_pc2(const std::string& path) {
   const std::string bytes = read_file(path, "point cache");
-  struct {
-    char name[12];
-    std::int32_t version, points;
-    float first, rate;
-    std::int32_t samples;
-  } head{};
-  static_assert(sizeof head == 32);
+  PointCacheHead head;
   std::memcpy(&head, bytes.data(), std::min(bytes.size(), sizeof head));
-  if (std::memcmp(head.name, "POINTCACHE2", 12) != 0 || head.points < 1 || head.samples < 1)
+  if (std::memcmp(head.name, PointCacheHead().name, sizeof head.name) != 0 || head.points < 1 ||
+      head.samples < 1)
     throw UsageError("'" + path + "' is not a point cache (.pc2)");
   const std::size_t floats = 3 * static_cast<std::size_t>(head.points);
   const auto samples = static_cast<std::size_t>(head.samples);
@@ -109,16 +98,15 @@ void check_first(const std::string& file, const Positions& first, const Scene& s
                           "order of vertices, or other axes"));
 }
 
-class Playback final : public inextensible::Stepper {
+class Playback final : public Stepper {
  public:
-  Playback(std::shared_ptr<const inextensible::Problem> problem,
-           std::shared_ptr<const Trajectory> trajectory)
+  Playback(std::shared_ptr<const Problem> problem, std::shared_ptr<const Trajectory> trajectory)
       : Stepper(std::move(problem), false), trajectory_(std::move(trajectory)) {}
 
  private:
-  inextensible::StepResult solve(const State&, double, Positions& x) override {
+  StepResult solve(const State&, double, Positions& x) override {
     if (++frame_ >= trajectory_->frames.size())
-      return {inextensible::Status::not_converged, 0, -1, 0, "the trajectory has ended"};
+      return {Status::not_converged, 0, -1, 0, "the trajectory has ended"};
     x = trajectory_->frames[frame_];
     return {};
   }
@@ -171,13 +159,13 @@ Trajectory read_trajectory(const std::vector<std::string>& files, const Scene& s
   return {interval, std::move(frames.path)};
 }
 
-inextensible::Backend playback(const char* name, const char* label,
-                               std::shared_ptr<const Trajectory> trajectory) {
+Backend playback(const char* name, const char* label,
+                 std::shared_ptr<const Trajectory> trajectory) {
   return {.name = name,
           .summary = "a trajectory that another program made; its time is as reported",
-          .strain_control = inextensible::StrainControl::time_step,
+          .strain_control = StrainControl::time_step,
           .make =
-              [trajectory](std::shared_ptr<const inextensible::Problem> problem,
+              [trajectory](std::shared_ptr<const Problem> problem,
                            const inextensible::BackendOptions&) {
                 return std::make_unique<Playback>(std::move(problem), trajectory);
               },
@@ -185,7 +173,7 @@ inextensible::Backend playback(const char* name, const char* label,
 }
 
 std::string worst_places(const Trajectory& trajectory, const Scene& scene) {
-  const inextensible::Problem& problem = *scene.problem;
+  const Problem& problem = *scene.problem;
   const auto* body = dynamic_cast<const inextensible::TriangleCollider*>(problem.collider());
   struct Worst {
     double value = 0, time = 0;
@@ -199,8 +187,7 @@ std::string worst_places(const Trajectory& trajectory, const Scene& scene) {
     const double time = static_cast<double>(k) * trajectory.interval;
     const StrainRange range = strain_range(problem, x);
     strain.raise(range.most, time, static_cast<long>(range.edge));
-    const inextensible::Pose pose =
-        problem.body_motion() ? problem.body_motion()(time) : inextensible::Pose{};
+    const Pose pose = problem.body_motion() ? problem.body_motion()(time) : Pose{};
     for (Eigen::Index v = 0; body && v < x.cols(); ++v)
       depth.raise(-body->nearest(pose.inverse()(x.col(v))).signed_distance, time, v);
     if (problem.pins_follow_body()) continue;

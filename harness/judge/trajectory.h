@@ -1,15 +1,19 @@
 // Trajectories that other programs have made of a scene, judged like runs of a solver.
 #pragma once
 
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "harness/judge/reference.h"
-#include "harness/scenes/scene.h"
-#include "solvers/methods/backend.h"
+#include "harness/points/point.h"
 
 namespace harness {
+
+// A point cache (.pc2): this, then the points of each sample in single precision.
+struct PointCacheHead {
+  char name[12] = "POINTCACHE2";
+  std::int32_t version = 1, points = 0;
+  float first_frame = 0, frames_per_sample = 1;
+  std::int32_t samples = 0;
+};
+static_assert(sizeof(PointCacheHead) == 32);
 
 struct Trajectory {
   double interval = 0;  // s between frames; the first is the scene's start
@@ -22,8 +26,7 @@ struct Trajectory {
 Trajectory read_trajectory(const std::vector<std::string>& files, const Scene& scene, double rate);
 
 // A solver that repeats the frames, in steps of the interval.
-inextensible::Backend playback(const char* name, const char* label,
-                               std::shared_ptr<const Trajectory> trajectory);
+Backend playback(const char* name, const char* label, std::shared_ptr<const Trajectory> trajectory);
 
 // The worst places of a trajectory, for people: strain, depth in the body, moved pins, in lines.
 std::string worst_places(const Trajectory& trajectory, const Scene& scene);

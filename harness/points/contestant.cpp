@@ -4,11 +4,9 @@ namespace harness {
 namespace {
 
 // Building takes a while where there is a body, and suites ask for one scene again and again.
-const inextensible::Problem& small_problem(const SceneType& type, const SceneParameters& given) {
+const Problem& small_problem(const SceneType& type, const SceneParameters& given) {
   constexpr double enough = 11;  // the same parts as at any size
-  static std::map<std::pair<std::string, SceneParameters>,
-                  std::shared_ptr<const inextensible::Problem>>
-      built;
+  static std::map<std::pair<std::string, SceneParameters>, std::shared_ptr<const Problem>> built;
   SceneParameters small = complete_parameters(type, given);
   small[type.resolution] = std::min(enough, small.at(type.resolution));
   auto& problem = built[{type.name, small}];
@@ -33,7 +31,7 @@ Contestant read_contestant(const json& given, const std::string& where) {
   contestant.label = entry.value("label", "");
   contestant.unranked = entry.value("unranked", false);
   check_plain_name(contestant.name, where + ": 'name'");
-  if (!contestant.own_name() && inextensible::find_backend(contestant.name))
+  if (!contestant.own_name() && find_backend(contestant.name))
     throw UsageError(where + ": 'name' is \"" + contestant.name +
                      "\", which is the name of another solver");
   return contestant;
@@ -47,17 +45,17 @@ Contestants::iterator find_contestant(Contestants& all, const std::string& name)
 
 std::string label_of(const Contestant& contestant) {
   if (!contestant.label.empty()) return contestant.label;
-  const auto* backend = inextensible::find_backend(contestant.solver);
+  const auto* backend = find_backend(contestant.solver);
   if (contestant.own_name() && backend) return backend->label;
   std::string words = contestant.name;
   std::replace(words.begin(), words.end(), '_', ' ');
   return words;
 }
 
-const inextensible::Backend& checked_backend(const std::string& name, const std::string& where) {
-  const auto* backend = inextensible::find_backend(name);
+const Backend& checked_backend(const std::string& name, const std::string& where) {
+  const auto* backend = find_backend(name);
   if (backend) return *backend;
-  throw UsageError(where + ": " + no_solver(name, names_of(inextensible::backends())).what());
+  throw UsageError(where + ": " + no_solver(name, names_of(backends())).what());
 }
 
 std::shared_ptr<const SceneType> checked_scene(const std::string& name, const std::string& where) {
@@ -74,12 +72,11 @@ UsageError no_solver(const std::string& name, const std::vector<std::string>& kn
 
 bool matches(const Pattern& pattern, const std::string& solver) {
   if (pattern.matches(solver)) return true;
-  const auto* backend = inextensible::find_backend(solver);
+  const auto* backend = find_backend(solver);
   return backend && pattern.matches(std::string(backend->method) + "@" + backend->stepper);
 }
 
-void check_settings(const inextensible::Settings& settings, const std::string& where,
-                    const inextensible::Backend& backend) {
+void check_settings(const Settings& settings, const std::string& where, const Backend& backend) {
   const std::string kind = "setting of solver " + std::string(backend.name);
   for (const auto& setting : settings)
     check_known(kind, setting.first, names_of(backend.settings), where);
@@ -98,8 +95,8 @@ void check_plain_name(const std::string& name, const std::string& where) {
         "ids)");
 }
 
-inextensible::Settings Contestant::settings_for(int resolution, double limit) const {
-  inextensible::Settings all = settings;
+Settings Contestant::settings_for(int resolution, double limit) const {
+  Settings all = settings;
   const auto distance = [&](const SettingsAt& at) {
     return std::hypot(std::log(at.resolution / static_cast<double>(resolution)),
                       std::log(at.limit / limit));
@@ -110,9 +107,9 @@ inextensible::Settings Contestant::settings_for(int resolution, double limit) co
 }
 
 Contestants competitors(const SceneType& type, const SceneParameters& given) {
-  const inextensible::Problem& problem = small_problem(type, given);
+  const Problem& problem = small_problem(type, given);
   Contestants all;
-  for (const auto& backend : inextensible::backends()) {
+  for (const auto& backend : backends()) {
     const bool another = type.kind() == "chain" && *backend.same_on_chains;
     if (backend.contestant && !another && !part_not_taken(backend, problem))
       all.push_back({backend.name, backend.name});

@@ -12,7 +12,7 @@ namespace harness {
 struct SettingsAt {
   int resolution = 1;
   double limit = 0.01;
-  inextensible::Settings settings;
+  Settings settings;
   bool operator==(const SettingsAt&) const = default;
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SettingsAt, resolution, limit, settings)
@@ -20,13 +20,13 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SettingsAt, resolution, limit, settings)
 struct Contestant {
   std::string name;    // a-z, 0-9, _ and @; the solver's own unless it takes part more than once
   std::string solver;  // see `bench list solvers`
-  inextensible::Settings settings = {};  // given ones only
-  std::string label = "";                // in figures; empty: the solver's, or the name in words
-  bool unranked = false;                 // beside the ranking, drawn with hollow marks
+  Settings settings = {};  // given ones only
+  std::string label = "";  // in figures; empty: the solver's, or the name in words
+  bool unranked = false;   // beside the ranking, drawn with hollow marks
   // Further settings; those of the nearest place apply (by the ratios of sizes and limits).
   std::vector<SettingsAt> settings_at = {};
 
-  inextensible::Settings settings_for(int resolution, double limit) const;
+  Settings settings_for(int resolution, double limit) const;
   bool own_name() const { return name == solver; }
   bool operator==(const Contestant&) const = default;
 };
@@ -43,11 +43,10 @@ Contestants read_contestants(const json& solvers, const std::string& where);
 // a chain, a solver that coincides with another one there is left out.
 Contestants competitors(const SceneType& type, const SceneParameters& given);
 // Throws unless the solver accepts them.
-void check_settings(const inextensible::Settings& settings, const std::string& where,
-                    const inextensible::Backend& backend);
+void check_settings(const Settings& settings, const std::string& where, const Backend& backend);
 // Throws unless it consists of a-z, 0-9 and _, and one @ at most, for a method in a time stepper.
 void check_plain_name(const std::string& name, const std::string& where);
-const inextensible::Backend& checked_backend(const std::string& name, const std::string& where);
+const Backend& checked_backend(const std::string& name, const std::string& where);
 // where: may be empty.
 std::shared_ptr<const SceneType> checked_scene(const std::string& name,
                                                const std::string& where = "");

@@ -35,15 +35,13 @@ struct ErrorSample {
 
 // What each means: measure_fields.
 struct Measures {
-  double max_strain = 0, max_stretch = 0;
+  double max_strain = 0;
   double p99_strain = unknown, rms_strain = unknown;
   double max_strain_after_collision = unknown;
-  double delivered_strain_p99 = unknown, delivered_strain_rms = unknown;
   double kinetic_energy_mean = unknown;
   double energy_drift = unknown;
-  double energy_gain = unknown, energy_gain_time = unknown;
+  double energy_gain = unknown;
   double energy_rise = unknown;
-  double symmetry_defect = unknown;
   std::string reference;
   double trajectory = unknown, trajectory_mean = unknown, trajectory_max = unknown;
   double gap = unknown;
@@ -53,7 +51,6 @@ struct Measures {
   std::vector<ErrorSample> error_series;
   double moved = unknown;
   double valid_until = unknown;
-  double residual_first = unknown, residual_last = unknown;
   std::vector<ResidualSample> residuals;
   std::map<std::string, double> sag;
   double rest_speed = unknown;
@@ -66,8 +63,6 @@ inline constexpr FieldTraits error_or_null{.inside = "error", .nullable = true};
 inline constexpr std::tuple measure_fields{
     field("max_strain", &Measures::max_strain, "", "largest |strain| of an edge, over all steps",
           number_or_null),
-    field("max_stretch", &Measures::max_stretch, "", "largest extension of an edge, over all steps",
-          number_or_null),
     field("p99_strain", &Measures::p99_strain, "",
           "99 % of |strain|s lie below it, over edges and sampled instants", number_or_null),
     field("rms_strain", &Measures::rms_strain, "",
@@ -75,22 +70,15 @@ inline constexpr std::tuple measure_fields{
     field("max_strain_after_collision", &Measures::max_strain_after_collision, "",
           "largest |strain| after the collision filter, over all steps; with a collider only",
           number_or_null),
-    field("delivered_strain_p99", &Measures::delivered_strain_p99, "",
-          "as p99_strain, after the collision filter; without a collider the same", number_or_null),
-    field("delivered_strain_rms", &Measures::delivered_strain_rms, "",
-          "as rms_strain, after the collision filter; without a collider the same", number_or_null),
     field("kinetic_energy_mean", &Measures::kinetic_energy_mean, "J",
           "kinetic energy, mean over sampled instants", number_or_null),
     field("energy_drift", &Measures::energy_drift, "weight times size",
           "largest |E - E_0|, over all steps, where nothing dissipates", error_or_null),
     field("energy_gain", &Measures::energy_gain, "weight times size",
           "largest E - E_0, over all steps; negative: energy was lost throughout", error_or_null),
-    field("energy_gain_time", &Measures::energy_gain_time, "s", "when that was", error_or_null),
     field("energy_rise", &Measures::energy_rise, "weight times size",
           "sum of all rises of E between means over 0.01 s, where energy can only fall",
           error_or_null),
-    field("symmetry_defect", &Measures::symmetry_defect, "scene's size",
-          "largest distance to the mirror image", error_or_null),
     field("reference", &Measures::reference, "",
           "name of the reference in results/references; null: there is none", error_or_null),
     field("trajectory", &Measures::trajectory, "scene's size",
@@ -119,14 +107,9 @@ inline constexpr std::tuple measure_fields{
           error_or_null),
     field("valid_until", &Measures::valid_until, "s",
           "up to here the reference is known to 1 % of the scene's size", error_or_null),
-    field("residual_first", &Measures::residual_first, "m",
-          "fast projection's mean |F| over vertices and sampled steps, after the first iteration",
-          error_or_null),
-    field("residual_last", &Measures::residual_last, "m", "the same after the last iteration",
-          error_or_null),
     field("residuals", &Measures::residuals, "s, m, m",
-          "time, mean |F| after the first and after the last iteration; of step sweeps alone, so "
-          "that files stay small",
+          "time, fast projection's mean |F| over vertices after the first and after the last "
+          "iteration; of step sweeps alone, so that files stay small",
           {.inside = "error"}),
     field("sag", &Measures::sag, "m",
           "how far the vertices that the scene marks are below where they would hang if nothing "

@@ -8,6 +8,11 @@
 
 namespace harness {
 
+using inextensible::Backend, inextensible::backends, inextensible::find_backend,
+    inextensible::make_stepper, inextensible::PhaseSeconds, inextensible::Settings,
+    inextensible::Status, inextensible::Stepper, inextensible::StepResult,
+    inextensible::StrainControl, inextensible::Velocities, inextensible::WorkCounters;
+
 // How a run ended.
 enum class PointStatus {
   ok,
@@ -73,9 +78,9 @@ struct PointSpec {
   SceneParameters scene_parameters;  // complete
   int resolution = 0;                // the scene's own resolution parameter
   int vertices = 0, constraints = 0;
-  std::string contestant;  // the solver, or its name where it is in a run several times
-  std::string solver;
-  inextensible::Settings settings;  // given ones only
+  std::string contestant = {};  // the solver, or its name where it is in a run several times
+  std::string solver = {};
+  Settings settings = {};  // given ones only
   double strain_limit = 0.01;
   double step = 0.01;  // s
   std::uint64_t seed = 1;
@@ -111,6 +116,11 @@ struct RunOutcome {
   std::string detail;
   double setup_seconds = 0;
   Measures measures;
+
+  void end(PointStatus how, std::string why) {
+    status = how;
+    detail = std::move(why);
+  }
 };
 
 struct PointResult : Samples, RunOutcome {
@@ -125,8 +135,8 @@ struct PointResult : Samples, RunOutcome {
   int calibration_runs = 0;
   double calibration_guess = unknown;  // N, where the search began; unknown: at an estimate
   std::optional<double> stiffness;     // EA, N, found by calibration
-  inextensible::PhaseSeconds phases;   // of the run of the first filter sample
-  inextensible::WorkCounters work;
+  PhaseSeconds phases;                 // of the run of the first filter sample
+  WorkCounters work;
   int steps_planned = 0;
   std::string linear_solver;
   double peak_rss_bytes = 0;

@@ -27,15 +27,15 @@ void from_json(const json& from, PointStatus& status) {
   status = row->status;
 }
 
-json to_json(const inextensible::WorkCounters& work) {
+json to_json(const WorkCounters& work) {
   json object;
   for (const auto& counter : inextensible::work_counters)
     std::visit([&](const auto member) { object[counter.name] = work.*member; }, counter.member);
   return object;
 }
 
-inextensible::WorkCounters work_of(const json& object) {
-  inextensible::WorkCounters work;
+WorkCounters work_of(const json& object) {
+  WorkCounters work;
   for (const auto& counter : inextensible::work_counters) {
     std::visit([&](const auto member) { object.at(counter.name).get_to(work.*member); },
                counter.member);

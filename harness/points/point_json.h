@@ -10,11 +10,10 @@ struct nlohmann::adl_serializer<std::variant<double, std::string>> {  // a setti
     std::visit([&to](const auto& held) { to = held; }, value);
   }
   static void from_json(const json& from, std::variant<double, std::string>& value) {
-    if (from.is_string()) {
+    if (from.is_string())
       value = from.get<std::string>();
-    } else {
+    else
       value = from.get<double>();
-    }
   }
 };
 
@@ -29,7 +28,7 @@ inline nlohmann::ordered_json FieldCodec<PointStatus>::schema(const FieldTraits&
 }
 
 template <>
-inline nlohmann::ordered_json FieldCodec<inextensible::Settings>::schema(const FieldTraits&) {
+inline nlohmann::ordered_json FieldCodec<Settings>::schema(const FieldTraits&) {
   return {{"type", "object"}, {"additionalProperties", {{"type", {"number", "string"}}}}};
 }
 
@@ -143,15 +142,15 @@ inline constexpr std::tuple result_fields{
 
 inline constexpr FieldTraits in_phases{.inside = "phases"};
 inline constexpr std::tuple phase_fields{
-    field("unconstrained", &inextensible::PhaseSeconds::unconstrained, "s",
+    field("unconstrained", &PhaseSeconds::unconstrained, "s",
           "wall time of one run in steps without constraints", in_phases),
-    field("filter", &inextensible::PhaseSeconds::filter, "s",
-          "wall time of the same run in the velocity filter", in_phases),
-    field("collision", &inextensible::PhaseSeconds::collision, "s",
+    field("filter", &PhaseSeconds::filter, "s", "wall time of the same run in the velocity filter",
+          in_phases),
+    field("collision", &PhaseSeconds::collision, "s",
           "wall time of the same run in the collision filter", in_phases),
-    field("contact", &inextensible::PhaseSeconds::contact, "s",
+    field("contact", &PhaseSeconds::contact, "s",
           "what of these three goes to friction, to finding contacts and to planes", in_phases),
-    field("copy", &inextensible::PhaseSeconds::copy, "s",
+    field("copy", &PhaseSeconds::copy, "s",
           "wall time of the same run in copying the state into an engine and out of it",
           in_phases)};
 
@@ -165,13 +164,13 @@ void for_each_table(Point& point, const Visit& visit) {
   visit(measure_fields, point.measures);
 }
 
-json to_json(const inextensible::WorkCounters& work);
+json to_json(const WorkCounters& work);
 json to_json(const PointResult& point);
 json to_json(const Samples& samples);
 
 // The way back: to_json(point_of(j)) == j. All throw json::exception for anything that is not what
 // they read.
-inextensible::WorkCounters work_of(const json& work);
+WorkCounters work_of(const json& work);
 PointResult point_of(const json& point);
 Samples samples_of(const json& samples);
 PointSpec spec_of(const json& point);

@@ -69,10 +69,9 @@ void add_rows(json& all, const json& more, const json& again, std::set<std::stri
 
 // Entries whose name is new.
 void add_named(json& all, const json& more) {
-  for (const json& entry : more) {
+  for (const json& entry : more)
     if (std::ranges::none_of(all, [&](const json& one) { return one["name"] == entry["name"]; }))
       all.push_back(entry);
-  }
 }
 
 void add_stability(json& all, const json& more) {
@@ -215,10 +214,9 @@ std::optional<PairNoise> pair_noise(const std::vector<PointResult>& points,
                                     const std::string& one) {
   PairNoise noise{{one, double_of(one)}};
   std::map<std::string, double> first;
-  for (const PointResult& point : points) {
+  for (const PointResult& point : points)
     if (counts(point) && point.spec.contestant == one)
       first[place_of(point.spec)] = point.seconds();
-  }
   std::vector<double> distances;
   for (const PointResult& point : points) {
     if (!counts(point) || point.spec.contestant != noise.pair[1]) continue;

@@ -68,12 +68,6 @@ ordered_json point_schema(ordered_json point) {
   return point;
 }
 
-ordered_json answer_row_schema() {
-  ordered_json row = closed_object();
-  add_fields(row, answer_row_fields);
-  return row;
-}
-
 ordered_json schema_document(const std::string& name) {
   const std::string path = source_path("configs/" + name + ".schema.json");
   ordered_json schema = ordered_json::parse(read_file(path, "schema"));
@@ -86,7 +80,11 @@ ordered_json schema_document(const std::string& name) {
   renew("counter", [] { return ordered_json{{"enum", counter_names()}}; });
   renew("work", work_schema);
   renew("point", [&definitions] { return point_schema(definitions["point"]); });
-  renew("answer_row", answer_row_schema);
+  renew("answer_row", [] {
+    ordered_json row = closed_object();
+    add_fields(row, answer_row_fields);
+    return row;
+  });
   return schema;
 }
 
@@ -100,8 +98,7 @@ std::string schema_text(const std::string& name) { return schema_document(name).
 
 ordered_json legend(const Contestants& contestants) {
   ordered_json solvers = ordered_json::array(), statuses = ordered_json::array();
-  const auto entry = [](const inextensible::Backend& backend, const std::string& name,
-                        const std::string& label) {
+  const auto entry = [](const Backend& backend, const std::string& name, const std::string& label) {
     return ordered_json{{"name", name},
                         {"label", label},
                         {"family", backend.family},
@@ -111,7 +108,7 @@ ordered_json legend(const Contestants& contestants) {
                         {"stepper_origin", word_of(backend.stepper_origin)},
                         {"contestant", backend.contestant}};
   };
-  for (const auto& backend : inextensible::backends()) {
+  for (const auto& backend : backends()) {
     solvers.push_back(entry(backend, backend.name, backend.label));
     for (const Contestant& c : contestants) {
       if (c.own_name() || c.solver != backend.name) continue;

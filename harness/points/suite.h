@@ -14,15 +14,15 @@ constexpr double longest_step = 1.0 / 24;
 struct SweepSpec {
   std::string sweep;  // "strain", "resolution" or "step"
   std::string scene;
-  Contestants contestants;
+  Contestants contestants = {};
   std::vector<double> limits;    // strain and step sweep: the axis; resolution sweep: one
   std::vector<int> resolutions;  // resolution sweep: the axis; the others: one
   // Unless they are given, the ladder begins at the run's whole duration at most.
   double coarsest = 1.0 / 25, finest = 1.0 / 25600;  // s, ends of the step ladder
   bool every_step = false;  // the whole ladder instead of a search; step sweeps always do
   bool refine = true;       // also try rungs between the halvings
-  SceneParameters scene_parameters;
-  std::map<std::string, inextensible::Settings> solver_options;  // a contestant's own go first
+  SceneParameters scene_parameters = {};
+  std::map<std::string, Settings> solver_options = {};  // a contestant's own go first
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(SweepSpec, sweep, scene, limits, resolutions,
                                                 scene_parameters, solver_options)

@@ -18,15 +18,13 @@ std::string hash_of(const std::vector<TunedEntry>& entries) {
 
 SweepSpec tuning_scene(const char* scene, std::vector<int> sizes, double coarsest, double duration,
                        std::vector<double> limits = {0.02, 0.002, 0.0002}) {
-  SweepSpec spec;
-  spec.sweep = "strain";
-  spec.scene = scene;
-  spec.limits = std::move(limits);
-  spec.resolutions = std::move(sizes);
-  spec.coarsest = coarsest;
-  spec.finest = 1.0 / 6400;
-  spec.scene_parameters = {{"duration", duration}};
-  return spec;
+  return {.sweep = "strain",
+          .scene = scene,
+          .limits = std::move(limits),
+          .resolutions = std::move(sizes),
+          .coarsest = coarsest,
+          .finest = 1.0 / 6400,
+          .scene_parameters = {{"duration", duration}}};
 }
 
 }  // namespace
@@ -65,7 +63,7 @@ json tuned_document(const std::vector<TunedEntry>& entries) {
 }
 
 void tune(Contestants& all, const Tuned& tuned, const std::string& kind,
-          const std::map<std::string, inextensible::Settings>& given) {
+          const std::map<std::string, Settings>& given) {
   for (Contestant& contestant : all) {
     const TunedEntry* entry = contestant.own_name() ? tuned.find(kind, contestant.solver) : nullptr;
     if (!entry) continue;
@@ -100,7 +98,7 @@ std::vector<int> smaller_sizes(const std::string& scene) {
   return {};  // of the others there are no smaller references
 }
 
-json tuning_rule(const SweepSpec& scene, const inextensible::Backend& solver) {
+json tuning_rule(const SweepSpec& scene, const Backend& solver) {
   const auto type = find_scene(scene.scene);
   SceneParameters parameters = complete_parameters(*type, scene.scene_parameters);
   parameters.erase(type->resolution);
@@ -123,20 +121,19 @@ std::string rule_change(const TunedEntry& entry) {
   const auto scene = std::ranges::find(
       tuning_scenes(), entry.kind, [](const SweepSpec& s) { return find_scene(s.scene)->kind(); });
   if (scene == tuning_scenes().end()) return "the scene, " + entry.kind + ", no longer exists";
-  return difference(entry.rule, tuning_rule(*scene, *inextensible::find_backend(entry.solver)));
+  return difference(entry.rule, tuning_rule(*scene, *find_backend(entry.solver)));
 }
 
 Tuned read_tuned_up_to_date(const std::string& file) {
   const bool path = file.find('/') != std::string::npos;
   Tuned tuned = parse_tuned(
       read_file(path ? file : source_path("configs/" + file), "file of tuned settings"), file);
-  for (const TunedEntry& entry : tuned.entries) {
+  for (const TunedEntry& entry : tuned.entries)
     if (const std::string change = rule_change(entry); !change.empty())
       throw UsageError("tuned settings '" + tuned.file + "': those of " + entry.solver +
                        " for the " + entry.kind + " were found by another rule: " + change +
                        "; search again: bench tune --scene " + entry.kind + " --solver " +
                        entry.solver);
-  }
   return tuned;
 }
 

@@ -45,7 +45,7 @@ json tuned_document(const std::vector<TunedEntry>& entries);
 // Gives each solver under its own name its tuned settings, unless its entry or `given` overrides
 // them.
 void tune(Contestants& all, const Tuned& tuned, const std::string& kind,
-          const std::map<std::string, inextensible::Settings>& given = {});
+          const std::map<std::string, Settings>& given = {});
 
 // The scenes on which settings are searched for, one a kind, each at two sizes and three limits. No
 // reported result has these sizes. Without contestants.
@@ -57,7 +57,7 @@ std::vector<int> smaller_sizes(const std::string& scene);
 
 // All that a search depends on except the programs that it times: the scene with its parameters,
 // sizes, limits, ladder and level of error, and the solver's settings, their defaults and ranges.
-json tuning_rule(const SweepSpec& scene, const inextensible::Backend& solver);
+json tuning_rule(const SweepSpec& scene, const Backend& solver);
 
 // The first difference between the rule that an entry was found by and today's; "": there is none.
 std::string rule_change(const TunedEntry& entry);

@@ -127,7 +127,7 @@ Calibration calibrate_stiffness(double strain_limit, double guess,
 }
 
 // Measured on a cloth of 15 x 15 and a chain of 80, with both methods that have springs.
-double nominal_seconds(const inextensible::WorkCounters& work, int edges) {
+double nominal_seconds(const WorkCounters& work, int edges) {
   return 15e-9 * static_cast<double>(work.spring_evaluations) +
          20e-9 * static_cast<double>(work.iterations) * edges +
          0.4e-9 * static_cast<double>(work.factorizations) * work.factor_flops +

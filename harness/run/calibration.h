@@ -1,12 +1,7 @@
 // The search for the stiffness of springs that keeps a strain limit.
 #pragma once
 
-#include <functional>
-#include <optional>
-#include <string>
-
 #include "harness/points/point.h"
-#include "harness/scenes/scene.h"
 
 namespace harness {
 
@@ -38,7 +33,7 @@ Calibration calibrate_stiffness(double strain_limit, double guess,
                                 const std::function<CalibrationTrial(double stiffness)>& run);
 
 // s, of a spring method's counted work on a usual machine, within a factor of two; repeatable.
-double nominal_seconds(const inextensible::WorkCounters& work, int edges);
+double nominal_seconds(const WorkCounters& work, int edges);
 
 // N: an estimate to begin a search from.
 double first_stiffness(const Scene& scene, double strain_limit);

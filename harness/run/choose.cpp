@@ -57,9 +57,8 @@ std::vector<PointResult> screen_all(const std::vector<Search>& searches, const C
 
 std::vector<PointResult*> fastest_runs(std::vector<PointResult>& points, const Wish& wish) {
   std::vector<PointResult*> list;
-  for (PointResult& point : points) {
+  for (PointResult& point : points)
     if (within(point, wish)) list.push_back(&point);
-  }
   std::ranges::sort(list, {}, &PointResult::seconds);
   list.resize(std::min(list.size(), finalists));
   return list;

@@ -1,11 +1,6 @@
 // Chooses the fastest solver and step that is accurate enough for a scene, within a given time.
 #pragma once
 
-#include <functional>
-#include <optional>
-#include <vector>
-
-#include "harness/run/measure_point.h"
 #include "harness/run/sweep.h"
 
 namespace harness {

@@ -7,7 +7,6 @@
 namespace harness {
 namespace {
 
-using nlohmann::json;
 using End = ChildOutcome::End;
 
 PointResult lost(const PointSpec& spec, const ChildOutcome& outcome, double timeout) {
@@ -17,14 +16,13 @@ PointResult lost(const PointSpec& spec, const ChildOutcome& outcome, double time
   PointResult point(spec);
   if (outcome.end == End::timed_out) {
     const bool calibrating = outcome.part == static_cast<int>(RunPart::calibration);
-    point.status = calibrating ? PointStatus::skipped : PointStatus::timeout;
-    point.detail = concat(calibrating ? "timed out while calibrating: " : "", "longer than ",
-                          timeout, " s, stuck ", place, "; ended with ", signal_text(outcome.code));
+    point.end(calibrating ? PointStatus::skipped : PointStatus::timeout,
+              concat(calibrating ? "timed out while calibrating: " : "", "longer than ", timeout,
+                     " s, stuck ", place, "; ended with ", signal_text(outcome.code)));
   } else {
     const bool starved = outcome.end == End::killed && outcome.out_of_memory;
-    point.status = starved ? PointStatus::out_of_memory : PointStatus::crashed;
-    point.detail =
-        ending(outcome) + " " + place + (starved ? "; the kernel was out of memory" : "");
+    point.end(starved ? PointStatus::out_of_memory : PointStatus::crashed,
+              ending(outcome) + " " + place + (starved ? "; the kernel was out of memory" : ""));
   }
   point.peak_rss_bytes = outcome.peak_rss_bytes;
   return point;
@@ -173,9 +171,8 @@ void add_runs_of(const json& result, Journal& journal) {
 
 void forget_failures(Journal& journal) {
   std::vector<std::string> failed;
-  for (const auto& [key, value] : journal.known()) {
+  for (const auto& [key, value] : journal.known())
     if (is_point(key) && value.at("status") != "ok") failed.push_back(key);
-  }
   for (const std::string& key : failed) forget_point(key, journal);
 }
 

@@ -2,9 +2,6 @@
 // journal. All runners wrap run_point(); tests replace it with formulas.
 #pragma once
 
-#include <functional>
-#include <memory>
-
 #include "harness/base/journal.h"
 #include "harness/run/measure_point.h"
 
@@ -28,7 +25,7 @@ Runner isolated(const Runner& inner, double memory);
 // repetition. The journal must outlive the runner.
 Runner journaled(const Runner& inner, Journal& journal);
 
-void add_runs_of(const nlohmann::json& result, Journal& journal);
+void add_runs_of(const json& result, Journal& journal);
 void forget_failures(Journal& journal);
 std::size_t points_in(const Journal& journal);  // without repetitions
 

@@ -29,9 +29,8 @@ double fixed_work() {
 }
 
 double QuietProbe::look() {
-  if (least_ == std::numeric_limits<double>::infinity()) {
+  if (least_ == std::numeric_limits<double>::infinity())
     for (int i = 0; i < first_looks; ++i) least_ = std::min(least_, work_());
-  }
   const double seconds = work_();
   least_ = std::min(least_, seconds);
   return seconds;

@@ -21,9 +21,8 @@ constexpr double least_filter_sample = 0.005;  // s, of a run with short steps
 void reset_peak_rss() { std::ofstream("/proc/self/clear_refs") << 5; }
 double peak_rss_bytes() {
   std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);) {
+  for (std::string line; std::getline(status, line);)
     if (line.starts_with("VmHWM:")) return 1024 * std::stod(line.substr(6));
-  }
   return 0;
 }
 
@@ -48,12 +47,12 @@ bool may_be_retaken(const Batch& batch) { return batch.ok() && batch.seconds < l
 struct Sampler {
   const PointResult& point;  // with the previous samples
   const PointRunner& runner;
-  const inextensible::Settings& settings;
+  const Settings& settings;
   // Reads of the clock would distort the time of a short step: its phases are timed in other runs.
   bool short_steps;
   const RunLimits& limits;
-  Samples& taken;                          // gets the samples
-  inextensible::PhaseSeconds phases = {};  // of the filter sample
+  Samples& taken;            // gets the samples
+  PhaseSeconds phases = {};  // of the filter sample
 
   // Takes a sample and returns the last run, perhaps a failed one. retaken: tries dropped before.
   Run add(int retaken) {
@@ -101,12 +100,12 @@ struct Sampler {
 };
 
 bool needs_stiffness(const PointRunner& runner) {
-  return runner.backend().strain_control == inextensible::StrainControl::stiffness &&
+  return runner.backend().strain_control == StrainControl::stiffness &&
          !runner.spec().settings.contains("stiffness");
 }
 
 // Adds the stiffness that springs need to the settings. False: none, and the point says why.
-bool calibrate(PointResult& point, const PointRunner& runner, inextensible::Settings& settings,
+bool calibrate(PointResult& point, const PointRunner& runner, Settings& settings,
                std::optional<double> guess) {
   const PointSpec& spec = point.spec;
   const auto begin = Clock::now();
@@ -122,18 +121,16 @@ bool calibrate(PointResult& point, const PointRunner& runner, inextensible::Sett
   point.calibration_seconds = since(begin);
   point.calibration_runs = found.runs;
   point.stiffness = found.stiffness;
-  if (!point.stiffness) {
-    point.status = found.status;
-    point.detail = found.detail;
-    return false;
-  }
-  settings["stiffness"] = *point.stiffness;
-  return true;
+  if (point.stiffness)
+    settings["stiffness"] = *point.stiffness;
+  else
+    point.end(found.status, found.detail);
+  return point.stiffness.has_value();
 }
 
 // The judged run, and a first sample: the same run if it is long enough and undisturbed, and if the
 // judge saw no iterates, which are kept while the clock runs.
-void measure(PointResult& point, const PointRunner& runner, const inextensible::Settings& settings,
+void measure(PointResult& point, const PointRunner& runner, const Settings& settings,
              const RunLimits& limits) {
   const bool timed = limits.timed;
   const double before = timed ? quiet_probe().look() : 0;
@@ -154,13 +151,12 @@ void measure(PointResult& point, const PointRunner& runner, const inextensible::
   const Run last =
       a_sample && !disturbed ? sampler.record(std::move(judged)) : sampler.add(a_sample ? 1 : 0);
   if (!point.filter_samples.empty()) point.phases = sampler.phases;
-  point.status = last.status;  // without a time it is not a result
-  point.detail = last.detail;
+  point.end(last.status, last.detail);  // without a time it is not a result
 }
 
 void take_sample(PointResult& more, const RunLimits& limits) {
   const PointResult& point = *limits.sample_of;
-  inextensible::Settings settings = point.spec.settings;
+  Settings settings = point.spec.settings;
   if (point.stiffness) settings["stiffness"] = *point.stiffness;
   const PointRunner runner(point.spec, limits);
   const bool short_steps = point.seconds() * point.spec.step < shortest_judged_step;
@@ -170,7 +166,7 @@ void take_sample(PointResult& more, const RunLimits& limits) {
 void look(PointResult& point, const RunLimits& limits) {
   const PointSpec& spec = point.spec;
   const PointRunner runner(spec, limits);
-  inextensible::Settings settings = spec.settings;
+  Settings settings = spec.settings;
   const bool springs = needs_stiffness(runner);
   if (springs)
     settings["stiffness"] =
@@ -184,20 +180,18 @@ void look(PointResult& point, const RunLimits& limits) {
         spec.step};
   point.status = PointStatus::ok;
   if (run.status == PointStatus::not_converged || run.status == PointStatus::diverged) {
-    point.status = run.status;
-    point.detail = run.detail;
+    point.end(run.status, run.detail);
   } else if (const double strain = run.measures.max_strain;
-             !springs && runner.backend().strain_control != inextensible::StrainControl::none &&
+             !springs && runner.backend().strain_control != StrainControl::none &&
              !(strain <= spec.strain_limit * (1 + 1e-9))) {
-    point.status = PointStatus::strain_missed;
-    point.detail = "strain " + told_apart(strain, spec.strain_limit);
+    point.end(PointStatus::strain_missed, "strain " + told_apart(strain, spec.strain_limit));
   }
 }
 
 void run_whole(PointResult& point, const RunLimits& limits) {
   const PointRunner runner(point.spec, limits);
   point.steps_planned = runner.steps();
-  inextensible::Settings settings = point.spec.settings;
+  Settings settings = point.spec.settings;
   if (!needs_stiffness(runner) || calibrate(point, runner, settings, limits.stiffness_guess))
     measure(point, runner, settings, limits);
 }
@@ -208,19 +202,16 @@ PointResult run_point(const PointSpec& spec, const RunLimits& limits) {
   PointResult point(spec);
   reset_peak_rss();
   try {
-    if (limits.sample_of) {
+    if (limits.sample_of)
       take_sample(point, limits);
-    } else if (limits.look) {
+    else if (limits.look)
       look(point, limits);
-    } else {
+    else
       run_whole(point, limits);
-    }
   } catch (const std::bad_alloc&) {
-    point.status = PointStatus::out_of_memory;
-    point.detail = "an allocation failed";
+    point.end(PointStatus::out_of_memory, "an allocation failed");
   } catch (const std::invalid_argument& error) {  // the solver does not take the problem
-    point.status = PointStatus::unsupported;
-    point.detail = error.what();
+    point.end(PointStatus::unsupported, error.what());
   }
   point.peak_rss_bytes = peak_rss_bytes();
   return point;

@@ -1,8 +1,6 @@
 // Runs one point: makes scene and solver, finds the stiffness of springs, steps, judges.
 #pragma once
 
-#include <functional>
-
 #include "harness/base/interrupt.h"
 #include "harness/judge/reference.h"
 #include "harness/points/point.h"

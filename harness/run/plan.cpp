@@ -1,9 +1,4 @@
-#include <algorithm>
-#include <map>
-#include <span>
 
-#include "harness/base/errors.h"
-#include "harness/run/measure_point.h"
 #include "harness/run/sweep.h"
 
 namespace harness {
@@ -16,9 +11,8 @@ constexpr double refinements[] = {1, 1.2, 1.44, 1.68};
 std::vector<double> step_ladder(const SweepSpec& sweep, std::span<const double> divisors) {
   std::vector<double> ladder;
   for (double h = sweep.coarsest; h >= sweep.finest * (1 - 1e-9); h /= 2) {
-    for (const double divisor : divisors) {
+    for (const double divisor : divisors)
       if (h / divisor >= sweep.finest * (1 - 1e-9)) ladder.push_back(h / divisor);
-    }
   }
   return ladder;
 }
@@ -86,8 +80,7 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
         base.solver = contestant.solver;
         base.seed = suite.seed;
         // Without a limit of its own a solver does the same at all of them.
-        const bool limited = inextensible::find_backend(contestant.solver)->strain_control !=
-                             inextensible::StrainControl::none;
+        const bool limited = find_backend(contestant.solver)->strain_control != StrainControl::none;
         for (const double limit : std::span(limits).first(limited ? limits.size() : 1)) {
           Search search;
           search.base = base;
@@ -120,8 +113,8 @@ Estimate estimate(const Suite& suite, const std::vector<Search>& searches) {
     const double duration = middle.base.scene_parameters.at("duration");
     const double run =
         std::min(duration * seconds_per_second(middle, step, suite.timeout), suite.timeout);
-    const bool calibrated = inextensible::find_backend(middle.base.solver)->strain_control ==
-                            inextensible::StrainControl::stiffness;
+    const bool calibrated =
+        find_backend(middle.base.solver)->strain_control == StrainControl::stiffness;
     for (const Search* search : members) {
       const auto rungs = static_cast<double>(search->ladder.size());
       const double tried = search->every_step ? rungs : std::min(rungs, runs_of_a_search);

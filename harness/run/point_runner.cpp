@@ -1,7 +1,6 @@
 #include "harness/run/point_runner.h"
 
 #include "harness/base/child_process.h"
-#include "harness/base/clock.h"
 #include "harness/base/statistics.h"
 #include "harness/base/text.h"
 #include "harness/judge/drive.h"
@@ -10,9 +9,6 @@
 #include "harness/run/calibration.h"
 
 namespace harness {
-
-using inextensible::State;
-using inextensible::Status;
 
 namespace {
 
@@ -31,7 +27,7 @@ constexpr double work_patience = 4;
 
 constexpr double rounding = 1e-6;  // of a frame: times add up their steps
 
-std::string refusal(const inextensible::StepResult& result, std::int64_t step, double time) {
+std::string refusal(const StepResult& result, std::int64_t step, double time) {
   const bool edge_known = result.worst_edge >= 0 && std::isfinite(result.worst_strain);
   return concat("step ", step, " (t = ", time, " s): ", inextensible::to_string(result.status),
                 ", ", result.detail, " after ", result.iterations, " iterations") +
@@ -42,9 +38,8 @@ std::string refusal(const inextensible::StepResult& result, std::int64_t step, d
 }  // namespace
 
 FrameTimes::FrameTimes(double step) {
-  for (const double rate : frame_rates) {
+  for (const double rate : frame_rates)
     if (step * rate <= 1 + rounding) films_.push_back({rate, {}});
-  }
 }
 
 void FrameTimes::add(int steps, double step, double time, double seconds) {
@@ -74,7 +69,7 @@ PointRunner::PointRunner(const PointSpec& spec, const RunLimits& limits)
     : spec_(spec),
       limits_(limits),
       scene_(limits.scene ? *limits.scene : find_scene(spec.scene)->build(spec.scene_parameters)),
-      backend_(*inextensible::find_backend(spec.solver)),
+      backend_(*find_backend(spec.solver)),
       steps_(static_cast<int>(std::lround(scene_.duration / spec.step))),
       first_state_(start_of(scene_, backend_, spec.step)) {
   if (limits.references) reference_ = limits.references->find(spec.scene, spec.scene_parameters);
@@ -141,20 +136,17 @@ class PointRunner::Observed : public Observer {
     options.velocities = backend_.velocities;
     if (stop_at_ != diverged_strain) return options;  // no errors, and nothing beside them
     options.reference = runner_.reference_;
-    // Memory for iterates would distort the growth that a resolution sweep measures.
-    options.residual = backend_.shows_iterates && spec_.sweep != "resolution";
-    // Only a figure of step sweeps draws the series.
-    options.residual_series = spec_.sweep == "step";
+    options.residuals = backend_.shows_iterates && spec_.sweep == "step";  // for Figure 3
     return options;
   }
 
-  bool keeps_strain() const { return backend_.strain_control != inextensible::StrainControl::none; }
+  bool keeps_strain() const { return backend_.strain_control != StrainControl::none; }
 
   // Whether the strain of a step ends the run.
   bool overstrained(double strain) {
     if (!keeps_strain() || strain <= stop_at_) return false;
-    run_.status = !(strain <= diverged_strain) ? PointStatus::diverged : PointStatus::strain_missed;
-    run_.detail = concat("strain ", strain, " at step ", run_.stepper->work().steps - 1);
+    run_.end(strain <= diverged_strain ? PointStatus::strain_missed : PointStatus::diverged,
+             concat("strain ", strain, " at step ", run_.stepper->work().steps - 1));
     return true;
   }
 
@@ -169,46 +161,40 @@ class PointRunner::Observed : public Observer {
     using End = DriveState::End;
     if (driven.end == End::arrived) return;
     if (driven.end == End::refused) {
-      run_.status = driven.result.status == Status::not_finite ? PointStatus::diverged
-                                                               : PointStatus::not_converged;
-      run_.detail = refusal(driven.result, run_.stepper->work().steps, time);
-      return;
+      const bool overflow = driven.result.status == Status::not_finite;
+      return run_.end(overflow ? PointStatus::diverged : PointStatus::not_converged,
+                      refusal(driven.result, run_.stepper->work().steps, time));
     }
     const bool slow = driven.end == End::stopped;
-    run_.status = PointStatus::timeout;
-    run_.detail =
-        concat("longer than ", slow ? limits_.hopeless : limits_.timeout, " s",
-               slow ? ", far above the best time so far" : "", "; stopped at t = ", time, " s");
+    run_.end(PointStatus::timeout, concat("longer than ", slow ? limits_.hopeless : limits_.timeout,
+                                          " s", slow ? ", far above the best time so far" : "",
+                                          "; stopped at t = ", time, " s"));
   }
 
   // Judges a run that reached its end.
   void decide() {
     const Measures& found = run_.measures;
-    if (keeps_strain() && !(found.max_strain <= spec_.strain_limit * (1 + 1e-9))) {
-      run_.status = PointStatus::strain_missed;
-      run_.detail = "maximum strain " + told_apart(found.max_strain, spec_.strain_limit) +
-                    " above " + number_text(spec_.strain_limit);
-    } else if (const std::string gained = energy_gained(
-                   judge_->energy(), runner_.scene_.energy_bound, runner_.scene_.duration);
-               !gained.empty()) {
-      run_.status = PointStatus::energy_gained;
-      run_.detail = gained;
-    } else if (const int crossed = judge_->crossings().vertices(); crossed > 0) {
-      run_.status = PointStatus::body_crossed;
-      run_.detail = std::to_string(crossed) + " of " +
-                    std::to_string(runner_.scene_.problem->vertices()) +
-                    " vertices passed through the body; shorter steps may not";
-    } else if (found.moved < least_motion) {
-      run_.status = PointStatus::motion_lost;
-      run_.detail = concat("its vertices moved ", number_text(found.moved, 3),
-                           " times as far as the reference's, ", least_motion, " are needed");
-    }
+    const Scene& scene = runner_.scene_;
+    if (keeps_strain() && !(found.max_strain <= spec_.strain_limit * (1 + 1e-9)))
+      return run_.end(PointStatus::strain_missed,
+                      "maximum strain " + told_apart(found.max_strain, spec_.strain_limit) +
+                          " above " + number_text(spec_.strain_limit));
+    const std::string gained = energy_gained(judge_->energy(), scene.energy_bound, scene.duration);
+    if (!gained.empty()) return run_.end(PointStatus::energy_gained, gained);
+    if (const int crossed = judge_->crossings().vertices(); crossed > 0)
+      return run_.end(PointStatus::body_crossed,
+                      concat(crossed, " of ", scene.problem->vertices(),
+                             " vertices passed through the body; shorter steps may not"));
+    if (found.moved < least_motion)
+      run_.end(PointStatus::motion_lost,
+               concat("its vertices moved ", number_text(found.moved, 3),
+                      " times as far as the reference's, ", least_motion, " are needed"));
   }
 
   const PointRunner& runner_;
   const PointSpec& spec_ = runner_.spec_;
   const RunLimits& limits_ = runner_.limits_;
-  const inextensible::Backend& backend_ = runner_.backend_;
+  const Backend& backend_ = runner_.backend_;
   double stop_at_;
   RunPart part_;
   Run& run_;
@@ -219,13 +205,13 @@ class PointRunner::Observed : public Observer {
   Clock::time_point begin_;
 };
 
-Run PointRunner::run(const inextensible::Settings& settings, bool judged, double stop_at,
-                     bool phases, RunPart part) const {
+Run PointRunner::run(const Settings& settings, bool judged, double stop_at, bool phases,
+                     RunPart part) const {
   Run run;
   const auto start = Clock::now();
   if (limits_.heartbeat) limits_.heartbeat->restart(static_cast<int>(part));
-  run.stepper = inextensible::make_stepper(
-      spec_.solver, scene_.problem, {spec_.strain_limit, spec_.seed, settings, &first_state_});
+  run.stepper = make_stepper(spec_.solver, scene_.problem,
+                             {spec_.strain_limit, spec_.seed, settings, &first_state_});
   run.setup_seconds = since(start);
   run.stepper->measure_phases(phases);
   State state = first_state_;

@@ -1,11 +1,7 @@
 // The run of one point's scene by its solver, once or several times.
 #pragma once
 
-#include <memory>
-#include <vector>
-
 #include "harness/run/measure_point.h"
-#include "solvers/registry.h"
 
 namespace harness {
 
@@ -35,7 +31,7 @@ struct Run : RunOutcome {
   double seconds = 0;  // of stepping alone
   double first_step_seconds = 0;
   double cpu_seconds = 0;  // of the thread, the same
-  std::unique_ptr<inextensible::Stepper> stepper;
+  std::unique_ptr<Stepper> stepper;
   bool observed = false;  // the judge saw the iterates
   std::vector<FrameTime> frame_times;
 };
@@ -51,10 +47,10 @@ class PointRunner {
   // only where that is diverged_strain. phases: whether they are timed, which takes tens of
   // nanoseconds each. A calibration's run is hopeless by the nominal time of its work, so that it
   // always ends alike. Throws Interrupted.
-  Run run(const inextensible::Settings& settings, bool judged, double stop_at, bool phases = true,
+  Run run(const Settings& settings, bool judged, double stop_at, bool phases = true,
           RunPart part = RunPart::measured) const;
 
-  const inextensible::Backend& backend() const { return backend_; }
+  const Backend& backend() const { return backend_; }
   const PointSpec& spec() const { return spec_; }
   const Scene& scene() const { return scene_; }
   int steps() const { return steps_; }
@@ -65,9 +61,9 @@ class PointRunner {
   const PointSpec& spec_;
   const RunLimits& limits_;
   Scene scene_;
-  const inextensible::Backend& backend_;
+  const Backend& backend_;
   int steps_;
-  inextensible::State first_state_;  // the scene's, or half a step back where velocities ask for it
+  State first_state_;  // the scene's, or half a step back where velocities ask for it
   std::shared_ptr<const Reference> reference_;
 };
 

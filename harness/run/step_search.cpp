@@ -29,11 +29,10 @@ class StepSearch {
   }
 
   BestSteps run() {
-    if (ladder_.every_step) {
+    if (ladder_.every_step)
       try_all();
-    } else {
+    else
       find();
-    }
     return {best_rung(any_motion), timed_out_ && !unsupported_, std::move(seconds_)};
   }
 
@@ -89,11 +88,10 @@ class StepSearch {
       if (unsupported_) return;
       const bool rose = point.ok() ? slower(rung, any_motion)
                                    : best_rung(any_motion).has_value() || direction < 0;
-      if (rose) {
+      if (rose)
         ++rises;
-      } else if (best_rung(any_motion) == rung) {
+      else if (best_rung(any_motion) == rung)
         rises = 0;
-      }
       failures_ = point.ok() ? 0 : failures_ + 1;
       if (gave_up(point)) ++timeouts;
       if (point.ok() && goal_) {
@@ -182,9 +180,8 @@ class StepSearch {
 
   double too_long() const {
     auto base = best_seconds(any_motion);
-    for (const double level : ladder_.levels) {
+    for (const double level : ladder_.levels)
       if (const auto met = best_seconds(level)) base = met;
-    }
     return base ? patient_factor * *base : never;
   }
 

@@ -1,11 +1,6 @@
 // The search for a solver's best steps.
 #pragma once
 
-#include <functional>
-#include <map>
-#include <optional>
-#include <vector>
-
 #include "harness/points/point.h"
 
 namespace harness {

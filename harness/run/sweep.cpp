@@ -35,11 +35,10 @@ void choose(const std::vector<Choice>& choices, std::vector<PointResult>& points
     const auto [rung, place] = *std::ranges::min_element(
         choice.candidates, {}, [&](const auto& one) { return points[one.second].seconds(); });
     PointResult& point = points[place];
-    if (choice.level == any_motion) {
+    if (choice.level == any_motion)
       point.best = true;
-    } else {
+    else
       point.best_at_errors.push_back(choice.level);
-    }
     point.at_ladder_end = ladder_end(rung, choice.rungs);
   }
 }
@@ -119,9 +118,8 @@ void Sweep::repeat_candidates() {
     int tries, least;  // samples
   };
   std::set<std::size_t> candidates;
-  for (const Choice& choice : choices) {
+  for (const Choice& choice : choices)
     for (const auto& [rung, place] : choice.candidates) candidates.insert(place);
-  }
   std::vector<Repeated> round;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const bool may_be_best = candidates.contains(i);

@@ -3,11 +3,6 @@
 // all that succeeded) are repeated in a shuffled order, and the best chosen from all samples.
 #pragma once
 
-#include <functional>
-#include <optional>
-#include <vector>
-
-#include "harness/base/pattern.h"
 #include "harness/points/suite.h"
 #include "harness/run/execute.h"
 

@@ -102,15 +102,14 @@ struct Tuner {
     measured.clear();
   }
 
-  inextensible::Settings settings_of(const Values& values) const {
-    inextensible::Settings settings;
+  Settings settings_of(const Values& values) const {
+    Settings settings;
     for (std::size_t i = 0; i < numbers.size(); ++i)
       if (values[i] != numbers[i].initial) settings[numbers[i].name] = values[i];
     return settings;
   }
 
-  PointResult run_once(std::size_t rung, const inextensible::Settings& settings,
-                       double most_seconds) {
+  PointResult run_once(std::size_t rung, const Settings& settings, double most_seconds) {
     PointSpec what = search.base;
     what.step = search.ladder[rung];
     what.settings = settings;
@@ -176,19 +175,18 @@ struct Tuner {
 
   // Seconds of the best step with these settings; none above `hopeless`.
   std::optional<double> evaluate(const Values& values, double hopeless) {
-    const inextensible::Settings settings = settings_of(values);
+    const Settings settings = settings_of(values);
     const bool in_race = hopeless < 1e300;
     const auto own = measured.find(values);
     auto [rung, fastest] =
         best_step(settings, own == measured.end() ? leader.rung : own->second.rung, in_race ? 1 : 2,
                   hopeless);
     // One run is enough to rule out slower settings.
-    if (fastest.ok() && (!in_race || fastest.seconds() < leader.seconds)) {
+    if (fastest.ok() && (!in_race || fastest.seconds() < leader.seconds))
       for (int i = 1; i < samples; ++i) repeat(fastest);
-    }
     const bool found = fastest.ok() && fastest.seconds() <= hopeless;
-    options.tell(scene.scene + "/" + search.base.solver + " " + nlohmann::json(settings).dump() +
-                 ": " + (found ? duration_text(fastest.seconds()) + "/s" : "too slow"));
+    options.tell(scene.scene + "/" + search.base.solver + " " + json(settings).dump() + ": " +
+                 (found ? duration_text(fastest.seconds()) + "/s" : "too slow"));
     if (!found) return {};
     learn(measured[values] = {rung, fastest.seconds()});
     return fastest.seconds();
@@ -200,8 +198,8 @@ struct Tuner {
 
   // The rung of the fastest step and its run, which is not ok if none counts: from `start` to both
   // sides, until `patience` steps in a row are not faster.
-  std::pair<std::size_t, PointResult> best_step(const inextensible::Settings& settings,
-                                                std::size_t start, int patience, double hopeless) {
+  std::pair<std::size_t, PointResult> best_step(const Settings& settings, std::size_t start,
+                                                int patience, double hopeless) {
     std::pair<std::size_t, PointResult> best;
     const PointResult& fastest = best.second;
     const auto faster = [&](std::size_t rung) {
@@ -222,7 +220,7 @@ struct Tuner {
   }
 };
 
-Values values_of(const inextensible::Settings& settings, const std::vector<TunedNumber>& numbers) {
+Values values_of(const Settings& settings, const std::vector<TunedNumber>& numbers) {
   Values values;
   for (const TunedNumber& number : numbers) {
     const auto given = settings.find(number.name);
@@ -282,7 +280,7 @@ TuneOutcome tune_values(const std::vector<TunedNumber>& numbers, const TuneObjec
   return outcome;
 }
 
-std::vector<TunedNumber> tunable_numbers(const inextensible::Backend& backend) {
+std::vector<TunedNumber> tunable_numbers(const Backend& backend) {
   std::vector<TunedNumber> numbers;
   for (const auto& info : backend.settings) {
     if (!info.tunable) continue;
@@ -308,7 +306,7 @@ double value_at(const TunedNumber& number, double position) {
 
 TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene, TuneOptions options,
                        const Runner& run, const TunedEntry* known) {
-  const inextensible::Backend& backend = *inextensible::find_backend(solver);
+  const Backend& backend = *find_backend(solver);
   const std::vector<TunedNumber> numbers = tunable_numbers(backend);
   options.budget = std::min(options.budget, options.trials_each * static_cast<int>(numbers.size()));
   TunedEntry entry{.kind = find_scene(scene.scene)->kind(),

@@ -4,15 +4,8 @@
 // Departure: distances shrink, for budgets of a few dozen trials.
 #pragma once
 
-#include <functional>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "harness/points/suite.h"
 #include "harness/points/tuned.h"
 #include "harness/run/sweep.h"
-#include "solvers/methods/backend.h"
 
 namespace harness {
 
@@ -24,7 +17,7 @@ struct TunedNumber {
 };
 
 // The settings that a method's row marks as tunable, in its order.
-std::vector<TunedNumber> tunable_numbers(const inextensible::Backend& backend);
+std::vector<TunedNumber> tunable_numbers(const Backend& backend);
 
 using Values = std::vector<double>;  // one of each setting
 // Seconds with these values; none if they fail, or may be none if they take longer than `hopeless`.

@@ -14,8 +14,6 @@
 namespace harness {
 namespace {
 
-using inextensible::Positions;
-
 // ---- Straight and folded ----
 
 // n vertices on a straight horizontal line, vertex 0 pinned, at rest, released.
@@ -31,12 +29,7 @@ Scene build_taut_row(const SceneParameters& p) {
   Draft row = vertex_row(p);
   const int n = whole(p);
   const double span = p.at("length") * p.at("stretch");
-  Scene::Mirror left_right{{1, 0, 0}, {}};
-  for (int i = 0; i < n; ++i) {
-    row.scene.start.x(0, i) = 0.5 * span * (2 * i - (n - 1)) / (n - 1);
-    left_right.image.push_back(n - 1 - i);
-  }
-  row.scene.mirrors.push_back(std::move(left_right));
+  for (int i = 0; i < n; ++i) row.scene.start.x(0, i) = 0.5 * span * (2 * i - (n - 1)) / (n - 1);
   return released(std::move(row), {0, n - 1});
 }
 
@@ -47,7 +40,7 @@ Scene build_folded(const SceneParameters& p) {
   const int n = whole(p), links = n - 1;
   const double link = row_link(p), speed = value_or_zero(p, "speed");
   const int arm = (links - 1) / 2, across = links - 2 * arm;
-  inextensible::State& start = chain.scene.start;
+  State& start = chain.scene.start;
   for (int i = 1; i < n; ++i) {
     const Eigen::Vector3d along = i <= arm            ? Eigen::Vector3d(0, -link, 0)
                                   : i <= arm + across ? Eigen::Vector3d(link, 0, 0)
@@ -172,8 +165,7 @@ Positions whirling(const SceneParameters& p, double time) {
 
 Scene build_whirling_chain(const SceneParameters& p) {
   Draft chain = vertex_row(p);
-  chain.scene.mirrors.clear();  // it leaves every plane
-  inextensible::State& start = chain.scene.start;
+  State& start = chain.scene.start;
   start.x = whirling(p, 0);
   start.v.row(2) = -whirling_rate(p) * start.x.row(0);
   return released(std::move(chain), {0});

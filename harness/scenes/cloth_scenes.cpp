@@ -2,11 +2,19 @@
 #include <cmath>
 
 #include "harness/scenes/cloth_mesh.h"
-#include "harness/scenes/fabrics.h"
 #include "solvers/problem/triangle_collider.h"
 
 namespace harness {
 namespace {
+
+// Matsudaira, Masuda, Wada and Yokura 2015, "Shape Factor of Flared Skirts Compared with That of
+// Circular Fabrics", Journal of Textile Engineering 61(6), tables 1 and 2: Kawabata's instruments,
+// means of warp and weft; mg/cm^2 and gf cm^2/cm. Their cotton is a broadcloth.
+constexpr double mg_cm2 = 1e-6 / (1e-2 * 1e-2);                // kg/m^2
+constexpr double gf_cm2_cm = 9.80665e-3 * 1e-2 * 1e-2 / 1e-2;  // N m
+// Shear stiffness in N/m that is assumed for all: 1 gf/(cm degree), the usual order of magnitude of
+// apparel fabrics on Kawabata's shear tester.
+constexpr double fabric_shear = 9.80665e-3 / 1e-2 * 180 / std::numbers::pi;
 
 // One of the two curves whose sum is a folded cloth: n points, links of length l, in waves of the
 // slope A sin(2 pi w s) over the arc length s, mirrored about its middle to the last bit. Columns:
@@ -31,11 +39,10 @@ Eigen::Matrix2Xd waves(int n, double l, double slope) {
 void lay(Scene& scene, const Eigen::Matrix2Xd& weft, const Eigen::Matrix2Xd& warp, double y,
          double aside = 0) {
   const Eigen::Index n = weft.cols();
-  for (Eigen::Index i = 0; i < n; ++i) {
+  for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index j = 0; j < n; ++j)
       scene.start.x.col(i * n + j) << weft(0, j) + aside, y + weft(1, j) + warp(1, i),
           warp(0, i) - 0.5 * aside;
-  }
 }
 
 // Off the ball's axis and in two unlike waves, so that no symmetry is left. Along each side the
@@ -58,7 +65,6 @@ void place_unevenly(Scene& scene, const SceneParameters& p, double y) {
     return at;
   };
   lay(scene, curve(2, 0.7), curve(1.5, 2.1), y, value_or_zero(p, "off_axis"));
-  scene.mirrors.clear();
 }
 
 // Above a polygonal sphere, centred at the origin, if that has a radius.
@@ -87,18 +93,16 @@ Scene build_drape(const SceneParameters& p) {
 // Pinned at two corners of one edge, which is straight at full length between them.
 Scene build_patch(const SceneParameters& p) {
   Draft cloth = vertex_square(p, 0);
-  cloth.scene.mirrors.pop_back();  // the pins break front to back
-  const std::vector<int> pins = {cloth.scene.corners[0], cloth.scene.corners[1]};
-  return released(std::move(cloth), pins);
+  return released(std::move(cloth), {0, whole(p) - 1});
 }
 
 constexpr double above_the_table = 1e-6;  // m, as nothing may start in an obstacle
 
-// A fabric in air that swings down from two corners, in waves, which leave no symmetry.
+// A fabric in air that swings down from two corners, in waves.
 Scene build_curtain(const SceneParameters& p) {
   Draft cloth = vertex_square(p, 0);
   place_unevenly(cloth.scene, p, 0);
-  cloth.parts.pinned = {cloth.scene.corners[0], cloth.scene.corners[1]};
+  cloth.parts.pinned = {0, whole(p) - 1};
   return finished(std::move(cloth));
 }
 
@@ -120,15 +124,14 @@ Scene build_block(const SceneParameters& p) {
   }
   cloth.parts.collider =
       std::make_shared<const inextensible::TriangleCollider>(std::move(box), p.at("friction"));
-  cloth.scene.mirrors.erase(cloth.scene.mirrors.begin());  // x is where it goes
   return finished(std::move(cloth));
 }
 
 // Coulomb friction slows it by mu g until it stands.
-inextensible::Positions block_at(const SceneParameters& p, double time) {
+Positions block_at(const SceneParameters& p, double time) {
   const double slowing = p.at("friction") * p.at("gravity"),
                sliding = std::min(time, p.at("speed") / slowing);
-  inextensible::Positions x = vertex_square(p, above_the_table).scene.start.x;
+  Positions x = vertex_square(p, above_the_table).scene.start.x;
   x.row(0).array() += sliding * (p.at("speed") - 0.5 * slowing * sliding);
   return x;
 }
@@ -144,10 +147,9 @@ Scene build_hung_patch(const SceneParameters& p) {
     const double below = x.z() + 0.5 * side;
     x << x.x(), -below * std::cos(tilt), below * std::sin(tilt);
   }
-  cloth.parts.pinned = {scene.corners[0], scene.corners[1]};
   const int n = whole(p);
+  cloth.parts.pinned = {0, n - 1};
   scene.marks = {{"top_row", n / 2, 0}, {"lower_edge", (n - 1) * n + n / 2, -side}};
-  scene.mirrors.pop_back();
   scene.staggered = false;  // its rest is compared, and not the way there
   return finished(std::move(cloth));
 }
@@ -232,7 +234,7 @@ Scene build_cusick(const SceneParameters& p) {
                                 " m under a disc of " + std::to_string(p.at("radius")) +
                                 " m: nothing hangs over");
   Draft draft = cloth_draft(disc_of(p), p);
-  inextensible::Positions& x = draft.scene.start.x;
+  Positions& x = draft.scene.start.x;
   for (Eigen::Index v = 0; v < x.cols(); ++v) x(1, v) = unevenness(p, x(0, v), x(2, v));
   draft.scene.size = 2 * p.at("radius");
   return finished(std::move(draft));
@@ -321,9 +323,9 @@ std::vector<SceneType> cloth_scenes() {
             {"radius", 0.15, "of the disc, m", 0, 1e6},
             {"table", 0.09, "radius on which it is held, m", 0, 1e6},
             {"uneven", 2e-4, "height of waves along the rim at the start, m", zero_too, 1e-2}},
-           {.density = fabric("cotton").density,
+           {.density = 12.38 * mg_cm2,
             .shear = fabric_shear,
-            .bending = fabric("cotton").bending,
+            .bending = 0.118 * gf_cm2_cm,
             .drag = 1},
            1.5),
        .build = build_cusick,

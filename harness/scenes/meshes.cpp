@@ -31,13 +31,8 @@ Draft vertex_row(const SceneParameters& p) {
   const int n = whole(p);
   Draft row(n, p);
   row.parts.mass.assign(n, p.at("mass") / n);
-  Scene::Mirror plane{{0, 0, 1}, {}};
-  for (int i = 0; i < n; ++i) {
-    plane.image.push_back(i);
-    if (i > 0) row.constrain(i - 1, i, row_link(p));
-  }
+  for (int i = 1; i < n; ++i) row.constrain(i - 1, i, row_link(p));
   row.scene.size = p.at("length");
-  row.scene.mirrors.push_back(std::move(plane));
   return row;
 }
 
@@ -50,7 +45,6 @@ Draft vertex_square(const SceneParameters& p, double y) {
   const bool fabric = p.contains("density");
   const double mass = fabric ? p.at("density") * side * side : p.at("mass");
   parts.mass.assign(n * n, mass / (n * n));
-  Scene::Mirror left_right{{1, 0, 0}, {}}, front_back{{0, 0, 1}, {}};
   const auto vertex = [n](int i, int j) { return i * n + j; };
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) {
@@ -58,8 +52,6 @@ Draft vertex_square(const SceneParameters& p, double y) {
       // bit.
       scene.start.x.col(vertex(i, j)) << 0.5 * l * (2 * j - (n - 1)), y,
           0.5 * l * (2 * i - (n - 1));
-      left_right.image.push_back(vertex(i, n - 1 - j));
-      front_back.image.push_back(vertex(n - 1 - i, j));
       if (j + 1 < n) square.constrain(vertex(i, j), vertex(i, j + 1), l);  // weft
       if (i + 1 < n) square.constrain(vertex(i, j), vertex(i + 1, j), l);  // warp
     }
@@ -93,8 +85,6 @@ Draft vertex_square(const SceneParameters& p, double y) {
   if (drag > 0) parts.drag.assign(n * n, drag * l * l);
   parts.implicit_forces = fabric;
   scene.size = side;
-  scene.mirrors = {std::move(left_right), std::move(front_back)};
-  scene.corners = {vertex(0, 0), vertex(0, n - 1), vertex(n - 1, 0), vertex(n - 1, n - 1)};
   return square;
 }
 

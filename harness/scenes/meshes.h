@@ -20,18 +20,16 @@ Scene finished(Draft draft);
 Scene released(Draft draft, std::vector<int> pinned);
 
 // n vertices along x, each constrained to the next, `mass` kg and `length` m in all; at rest, in
-// one place. One mirror, the x-y plane. Parameters: n, length, mass, duration, and gravity if there
-// is any.
+// one place. Parameters: n, length, mass, duration, and gravity if there is any.
 Draft vertex_row(const SceneParameters& p);
 
 // n x n vertices on a horizontal square, centred over the origin at the height y (m), at rest; row
 // i goes along z, column j along x, and vertex (i, j) has the number i n + j. Warp and weft are
-// constrained; both diagonals of each quad are springs where `shear` is positive. Two mirrors: x
-// and z reversed. Parameters: n, side, mass or density, shear, duration, and gravity, bending and
-// drag if there are any. With a density it is a fabric, whose forces, in physical units, are those
-// at the end of the step: as a spring of stiffness G each diagonal gives the cloth the shear
-// stiffness G, since turned by gamma both change by l gamma / sqrt(2), and bear G (l gamma)^2 / 2
-// together.
+// constrained; both diagonals of each quad are springs where `shear` is positive. Parameters: n,
+// side, mass or density, shear, duration, and gravity, bending and drag if there are any. With a
+// density it is a fabric, whose forces, in physical units, are those at the end of the step: as a
+// spring of stiffness G each diagonal gives the cloth the shear stiffness G, since turned by gamma
+// both change by l gamma / sqrt(2), and bear G (l gamma)^2 / 2 together.
 Draft vertex_square(const SceneParameters& p, double y);
 
 // Edge lengths of rows and squares, m.

@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <stdexcept>
-#include <string>
 
 namespace harness {
 
@@ -81,9 +80,9 @@ void Pendulum::advance(double time, double tolerance) {
   step_ = driver->h;
 }
 
-inextensible::Positions Pendulum::positions() const {
+Positions Pendulum::positions() const {
   const auto n = static_cast<Eigen::Index>(links_.mass.size());
-  inextensible::Positions x(3, n + 1);
+  Positions x(3, n + 1);
   x.col(0).setZero();
   for (Eigen::Index i = 0; i < n; ++i) {
     x.col(i + 1) =

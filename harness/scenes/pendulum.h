@@ -8,7 +8,7 @@
 // positive definite tridiagonal system (GSL), so that accelerations cost O(N).
 #pragma once
 
-#include "solvers/problem/problem.h"
+#include "harness/scenes/scene.h"
 
 namespace harness {
 
@@ -30,7 +30,7 @@ class Pendulum {
 
   double energy() const;  // J, potential 0 at the fixed point's height
   // Points 0 ... N (3 x (N + 1), m), point 0 at the origin.
-  inextensible::Positions positions() const;
+  Positions positions() const;
 
   // Rates (theta', theta'') of a state (theta, theta'), 2 N numbers each. False if the tensions
   // cannot be found.

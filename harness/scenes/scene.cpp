@@ -36,17 +36,15 @@ std::shared_ptr<const SceneType> find_scene(std::string_view name) {
         std::make_shared<const SceneType>(mesh ? mesh_scene(text) : folder_scene(text));
     return known[type->name] = type;
   }
-  for (const SceneType& type : scene_types()) {
+  for (const SceneType& type : scene_types())
     if (type.name == name) return {std::shared_ptr<const SceneType>(), &type};  // static
-  }
   return nullptr;
 }
 
 std::vector<std::string> scene_kinds() {
   std::vector<std::string> kinds;
-  for (const SceneType& type : scene_types()) {
+  for (const SceneType& type : scene_types())
     if (type.like.empty()) kinds.emplace_back(type.name);
-  }
   return kinds;
 }
 

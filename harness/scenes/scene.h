@@ -2,19 +2,18 @@
 // initial state; it knows nothing of solvers.
 #pragma once
 
-#include <array>
-#include <functional>
 #include <map>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "solvers/problem/problem.h"
 
 namespace harness {
+
+using inextensible::BodyMotion, inextensible::Edge, inextensible::Pose, inextensible::Positions,
+    inextensible::Problem, inextensible::ProblemParts, inextensible::State;
 
 using SceneParameters = std::map<std::string, double>;
 
@@ -27,17 +26,10 @@ struct SceneParameterInfo {
 };
 
 struct Scene {
-  std::shared_ptr<const inextensible::Problem> problem;
-  inextensible::State start;
-  double duration = 1;  // s
-  double size = 1;      // m, what errors are divided by
-  // A plane (through the origin, unit normal) that mirrors the scene onto itself, and each vertex's
-  // mirror image. For the chain it is the plane of its motion, and each vertex its own image.
-  struct Mirror {
-    Eigen::Vector3d normal;
-    std::vector<int> image;
-  };
-  std::vector<Mirror> mirrors;
+  std::shared_ptr<const Problem> problem;
+  State start;
+  double duration = 1;            // s
+  double size = 1;                // m, what errors are divided by
   bool conserves_energy = false;  // nothing dissipates: energy drift is an error
   // How far total energy may rise above the start's, over weight times size and the kinetic energy
   // at the start: enough to lift the whole by 5 % of its size. Runs that blow up gain ten times as
@@ -53,7 +45,6 @@ struct Scene {
     double height;  // m, at which it would hang if nothing stretched
   };
   std::vector<Mark> marks;
-  std::vector<int> corners;                   // of a cloth, for statistics of its shape
   std::vector<std::array<int, 3>> triangles;  // that cover it, all with the same side outwards
 };
 
@@ -65,7 +56,7 @@ struct SceneType {
   // Vertices and constraints, without building anything.
   std::function<std::pair<int, int>(const SceneParameters& complete)> counts;
   // Positions at a time (s) where the motion is known exactly: errors need no reference then.
-  inextensible::Positions (*exact)(const SceneParameters& complete, double time) = nullptr;
+  Positions (*exact)(const SceneParameters& complete, double time) = nullptr;
   std::string like = {};  // the scene whose tuned settings it takes; empty: its own
   // Straight from a pinned end, with nothing in its way: the links of a pendulum in a plane, whose
   // smooth motion scenes/pendulum.h integrates in angles.

@@ -3,8 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <stdexcept>
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
@@ -16,10 +14,6 @@
 
 namespace harness {
 namespace {
-
-using inextensible::Edge;
-using inextensible::Pose;
-using nlohmann::json;
 
 constexpr std::string_view folder_prefix = "folder:";
 constexpr double pose_interval = 1e-3;  // s
@@ -41,7 +35,7 @@ json numbers_of(const Matrix& matrix) {
   return std::vector<double>(matrix.data(), matrix.data() + matrix.size());
 }
 
-json poses_of(const inextensible::BodyMotion& motion, double duration) {
+json poses_of(const BodyMotion& motion, double duration) {
   json poses = json::array();
   for (int i = 0; i * pose_interval <= duration + pose_interval; ++i) {
     const Pose pose = motion(i * pose_interval);
@@ -52,7 +46,7 @@ json poses_of(const inextensible::BodyMotion& motion, double duration) {
   return poses;
 }
 
-inextensible::BodyMotion motion_of(const json& list) {
+BodyMotion motion_of(const json& list) {
   std::vector<Pose> poses;
   for (const auto& numbers : list.get<std::vector<std::array<double, 12>>>()) {
     const Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> rows(numbers.data());
@@ -63,7 +57,7 @@ inextensible::BodyMotion motion_of(const json& list) {
 }
 
 json document_of(const Scene& scene) {
-  const inextensible::Problem& problem = *scene.problem;
+  const Problem& problem = *scene.problem;
   json document{{"schema", "inextensible-scene/1"},
                 {"size", scene.size},
                 {"gravity", numbers_of(problem.gravity())},
@@ -72,7 +66,6 @@ json document_of(const Scene& scene) {
                 {"edge", pairs_of(problem.edges())},
                 {"rest_length", problem.rest_length()},
                 {"triangles", scene.triangles},
-                {"corners", scene.corners},
                 {"implicit", problem.implicit_forces()},
                 {"contact_inside", problem.contact_inside()},
                 {"pins_follow_body", problem.pins_follow_body()},
@@ -94,8 +87,6 @@ json document_of(const Scene& scene) {
     document["drag"].push_back(problem.drag(i));
   for (const Scene::Mark& mark : scene.marks)
     document["marks"].push_back({mark.name, mark.vertex, mark.height});
-  for (const Scene::Mirror& mirror : scene.mirrors)
-    document["mirrors"].push_back({numbers_of(mirror.normal), mirror.image});
   if (problem.body_motion())
     document["body_poses"] = poses_of(problem.body_motion(), scene.duration);
   return document;
@@ -135,7 +126,7 @@ Scene scene_of(const json& document, const std::string& folder) {
   Draft draft(static_cast<int>(cloth.vertices.size()),
               {{"duration", document.value("duration", 1.0)}});
   Scene& scene = draft.scene;
-  inextensible::ProblemParts& parts = draft.parts;
+  ProblemParts& parts = draft.parts;
   std::copy(cloth.vertices.begin(), cloth.vertices.end(), scene.start.x.colwise().begin());
   if (document.contains("v")) read(document.at("v"), scene.start.v, "v");
   read(document.at("gravity"), parts.gravity, "gravity");
@@ -163,15 +154,10 @@ Scene scene_of(const json& document, const std::string& folder) {
       "energy_bound", moves ? std::numeric_limits<double>::infinity() : scene.energy_bound);
   scene.size = document.value("size", scene.size);
   scene.triangles = document.value("triangles", none).get<std::vector<std::array<int, 3>>>();
-  scene.corners = document.value("corners", none).get<std::vector<int>>();
   scene.conserves_energy = document.value("conserves_energy", false);
   scene.staggered = document.value("staggered", true);
   for (const json& mark : document.value("marks", none))
     scene.marks.push_back({mark.at(0), mark.at(1), mark.at(2)});
-  for (const json& mirror : document.value("mirrors", none)) {
-    read(mirror.at(0), scene.mirrors.emplace_back().normal, "mirrors");
-    mirror.at(1).get_to(scene.mirrors.back().image);
-  }
   Scene made = finished(std::move(draft));
   inextensible::check_state(*made.problem, made.start);
   return made;
@@ -179,7 +165,7 @@ Scene scene_of(const json& document, const std::string& folder) {
 
 }  // namespace
 
-inextensible::BodyMotion motion_through(std::vector<Pose> poses, double interval) {
+BodyMotion motion_through(std::vector<Pose> poses, double interval) {
   return [poses = std::move(poses), interval](double time) {
     const auto last = static_cast<double>(poses.size() - 1);
     const double at = std::clamp(time / interval, 0.0, last);
@@ -214,8 +200,8 @@ void write_scene(const std::string& folder, const Scene& scene, const json& abou
     document["friction"] = body->friction();
     const auto& vertices = body->mesh().vertices;
     write("body.obj",
-          obj_text(Eigen::Map<const inextensible::Positions>(
-                       vertices.data()->data(), 3, static_cast<Eigen::Index>(vertices.size())),
+          obj_text(Eigen::Map<const Positions>(vertices.data()->data(), 3,
+                                               static_cast<Eigen::Index>(vertices.size())),
                    body->mesh().triangles, {}));
   }
   write("scene.json", document_text(document));

@@ -18,7 +18,7 @@ nlohmann::json about(const SceneType& type, const SceneParameters& complete);
 
 // Through poses at equal intervals (s) from time 0 on, at rest after the last: translations on
 // lines, turns about one axis between two.
-inextensible::BodyMotion motion_through(std::vector<inextensible::Pose> poses, double interval);
+BodyMotion motion_through(std::vector<Pose> poses, double interval);
 
 // Whether a scene's name is that of such a folder: "folder:PATH,content=HASH", or the path alone.
 bool names_folder(std::string_view scene);

@@ -14,35 +14,28 @@ using Eigen::Vector3d;
 // rad/s
 double turning_rate(const SceneParameters& p) { return 2 * std::numbers::pi * p.at("turns"); }
 
-// Gives each vertex its velocity of the rotation about `axis`, and the mirror of its plane.
-Scene spinning(Draft draft, const Vector3d& axis, const SceneParameters& p) {
-  Scene& scene = draft.scene;
-  Scene::Mirror plane{axis, {}};
-  for (int i = 0; i < scene.start.x.cols(); ++i) {
-    scene.start.v.col(i) = turning_rate(p) * axis.cross(Vector3d(scene.start.x.col(i)));
-    plane.image.push_back(i);
-  }
-  scene.mirrors = {std::move(plane)};
+// Gives each vertex its velocity of the rotation about coordinate axis `axis`.
+Scene spinning(Draft draft, int axis, const SceneParameters& p) {
+  State& start = draft.scene.start;
+  for (int i = 0; i < start.x.cols(); ++i)
+    start.v.col(i) = turning_rate(p) * Vector3d::Unit(axis).cross(Vector3d(start.x.col(i)));
   return released(std::move(draft), {});
 }
 
-template <Scene (*build)(const SceneParameters&)>
-inextensible::Positions turned_start(const SceneParameters& p, double time) {
-  const Scene scene = build(p);
-  const Eigen::AngleAxisd turn(turning_rate(p) * time, scene.mirrors.front().normal);
-  return turn.toRotationMatrix() * scene.start.x;
+template <Scene (*build)(const SceneParameters&), int axis>
+Positions turned_start(const SceneParameters& p, double time) {
+  const Eigen::AngleAxisd turn(turning_rate(p) * time, Vector3d::Unit(axis));
+  return turn.toRotationMatrix() * build(p).start.x;
 }
 
 // The square of rest lengths stays one, and its shear springs do nothing.
-Scene build_net(const SceneParameters& p) {
-  return spinning(vertex_square(p, 0), Vector3d::UnitY(), p);
-}
+Scene build_net(const SceneParameters& p) { return spinning(vertex_square(p, 0), 1, p); }
 
 Scene build_baton(const SceneParameters& p) {
   Draft row = vertex_row(p);
   const int n = whole(p);
   for (int i = 0; i < n; ++i) row.scene.start.x(0, i) = 0.5 * row_link(p) * (2 * i - (n - 1));
-  return spinning(std::move(row), Vector3d::UnitZ(), p);
+  return spinning(std::move(row), 2, p);
 }
 
 // A regular polygon: all its tensions are m Omega^2 r / (2 sin(pi / n)).
@@ -56,7 +49,7 @@ Scene build_hoop(const SceneParameters& p) {
     hoop.constrain(i, (i + 1) % n, 2 * r * std::sin(0.5 * sector));
   }
   hoop.scene.size = 2 * r;
-  return spinning(std::move(hoop), Vector3d::UnitZ(), p);
+  return spinning(std::move(hoop), 2, p);
 }
 
 const SceneParameterInfo turns_info{"turns", 1, "1/s, at the start", 0, 1e4};
@@ -77,7 +70,7 @@ std::vector<SceneType> spinning_scenes() {
                       duration_info()},
        .build = build_net,
        .counts = count_square,
-       .exact = turned_start<build_net>},
+       .exact = turned_start<build_net, 1>},
       {.name = "baton",
        .summary =
            "a straight chain that spins about its middle, free and without weight: its motion "
@@ -85,7 +78,7 @@ std::vector<SceneType> spinning_scenes() {
        .parameters = row_parameters({"n", 21, "vertices", 2, 10'000'000, true}, {turns_info}),
        .build = build_baton,
        .counts = count_row,
-       .exact = turned_start<build_baton>,
+       .exact = turned_start<build_baton, 2>,
        .like = "chain"},
       {.name = "hoop",
        .summary =
@@ -98,7 +91,7 @@ std::vector<SceneType> spinning_scenes() {
                       duration_info()},
        .build = build_hoop,
        .counts = [](const SceneParameters& p) { return std::pair(whole(p), whole(p)); },
-       .exact = turned_start<build_hoop>,
+       .exact = turned_start<build_hoop, 2>,
        .like = "chain"}};
 }
 

@@ -2,7 +2,6 @@
 // to it.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
 
@@ -103,7 +102,7 @@ void move_body(Draft& draft, double period, const Place& place) {
     const double phase = 2 * pi * time / period;
     const double strength = time < 0.5 * period ? 0.5 * (1 - std::cos(phase)) : 1;
     const auto [angle, x, z] = place(strength, phase);
-    inextensible::Pose pose;
+    Pose pose;
     pose.turn << std::cos(angle), 0, std::sin(angle), 0, 1, 0, -std::sin(angle), 0, std::cos(angle);
     pose.translation << x, 0, z;
     return pose;

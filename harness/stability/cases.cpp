@@ -2,8 +2,6 @@
 
 namespace harness::cases {
 
-using inextensible::Positions;
-
 Draft points(int n, double mass) {
   Draft mesh(n, {{"gravity", g}, {"duration", 0}});
   mesh.parts.mass.assign(n, mass);
@@ -73,15 +71,13 @@ Draft midpoint_cloth(int n) {
 
 // Springs promise no limit: a stiffness that would keep it in a fall of a few weights.
 Trial trial_of(Scene scene, double step, int steps, double strain_limit) {
-  const inextensible::Problem& problem = *scene.problem;
-  Trial trial;
-  trial.slack = strain_limit * problem.longest_rest_length();
-  trial.step = step;
-  trial.steps = steps > 0 ? steps : static_cast<int>(std::lround(scene.duration / step));
-  trial.strain_limit = strain_limit;
-  trial.stiffness = 20 * g * problem.total_mass() / strain_limit;
-  trial.scene = std::move(scene);
-  return trial;
+  const Problem& problem = *scene.problem;
+  return {.scene = scene,
+          .step = step,
+          .steps = steps > 0 ? steps : static_cast<int>(std::lround(scene.duration / step)),
+          .strain_limit = strain_limit,
+          .stiffness = 20 * g * problem.total_mass() / strain_limit,
+          .slack = strain_limit * problem.longest_rest_length()};
 }
 
 Trial trial_of(Draft mesh, double step, int steps, double strain_limit) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <random>
-#include <vector>
 
 #include "harness/scenes/meshes.h"
 #include "harness/stability/trial.h"
@@ -30,7 +29,6 @@ Trial trial_of(Scene scene, double step, int steps = 0, double strain_limit = 0.
 Trial trial_of(Draft mesh, double step, int steps, double strain_limit = 0.01);
 
 // Displaces every vertex that is not pinned by up to `size` m in each coordinate.
-void add_noise(inextensible::Positions& x, const std::vector<int>& pinned, double size,
-               std::mt19937_64& random);
+void add_noise(Positions& x, const std::vector<int>& pinned, double size, std::mt19937_64& random);
 
 }  // namespace harness::cases

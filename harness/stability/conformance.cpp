@@ -1,26 +1,11 @@
 #include "harness/stability/conformance.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <limits>
-#include <map>
-#include <random>
-#include <sstream>
-#include <stdexcept>
-#include <utility>
-#include <variant>
-
 #include "harness/base/child_process.h"
 #include "harness/base/text.h"
-#include "harness/judge/drive.h"
-#include "harness/judge/mechanics.h"
-#include "harness/judge/reference.h"
 #include "harness/scenes/pendulum.h"
 #include "harness/stability/cases.h"
 #include "harness/stability/stability.h"
 #include "solvers/problem/forces.h"
-#include "solvers/registry.h"
 
 namespace harness {
 
@@ -28,15 +13,11 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Finding, grade, check, measured, advice)
 
 namespace {
 
-using inextensible::Positions;
-using inextensible::State;
-using inextensible::StepResult;
-using inextensible::StrainControl;
 using Findings = std::vector<Finding>;
 using Grade = Finding::Grade;
 
 struct Examinee {
-  const inextensible::Backend& backend;
+  const Backend& backend;
   const ConformanceOptions& options;
 };
 
@@ -106,23 +87,22 @@ Case net(std::uint64_t seed, int n, int pins, double speed, double step, int ste
 }
 
 // The drape without the parts that the solver does not take.
-Case drape(const inextensible::Backend& solver, double step, int steps) {
+Case drape(const Backend& solver, double step, int steps) {
   SceneParameters given{{"n", 9}};
   if (!solver.takes_shear) given["shear"] = 0;
   if (!solver.takes_collider) given["radius"] = 0;
   return case_of("drape of 9 x 9", built_scene("drape", given), step, steps);
 }
 
-bool keeps_a_limit(const inextensible::Backend& solver) {
+bool keeps_a_limit(const Backend& solver) {
   return solver.strain_control == StrainControl::strain_limit;
 }
 
-std::unique_ptr<inextensible::Stepper> stepper_for(const Examinee& solver, const Case& c,
-                                                   const inextensible::Settings& settings = {}) {
+std::unique_ptr<Stepper> stepper_for(const Examinee& solver, const Case& c,
+                                     const Settings& settings = {}) {
   try {
-    return inextensible::make_stepper(
-        solver.backend.name, c.scene.problem,
-        {c.strain_limit, solver.options.seed, settings, &c.scene.start});
+    return make_stepper(solver.backend.name, c.scene.problem,
+                        {c.strain_limit, solver.options.seed, settings, &c.scene.start});
   } catch (const std::invalid_argument& error) {
     throw NotTaken(error.what());
   }
@@ -239,7 +219,7 @@ double spin_scale(const Scene& scene) {
 
 // Relative change of angular momentum over the run; infinite if a step is refused.
 double loss_of_spin(const Examinee& solver, const Case& c, int refinement) {
-  const inextensible::Problem& problem = *c.scene.problem;
+  const Problem& problem = *c.scene.problem;
   const auto stepper = stepper_for(solver, c);
   State state = c.scene.start;
   const Eigen::Vector3d start = angular_momentum(problem, state);
@@ -337,7 +317,7 @@ Findings refusal(const Examinee& solver) {
 Findings permissible_candidate(const Examinee& solver) {
   const char* check = "permissible candidate";
   // A setting of this name means the same in every row (setting_fields.h), plug-ins' too.
-  inextensible::Settings defaults = complete_settings(solver.backend, {});
+  Settings defaults = complete_settings(solver.backend, {});
   if (defaults.contains("min_iterations") && std::get<double>(defaults["min_iterations"]) > 0)
     return {not_applicable(check, "corrected too, by its setting min_iterations")};
   if (!keeps_a_limit(solver.backend)) return {not_applicable(check, "no limit of its own")};
@@ -345,7 +325,7 @@ Findings permissible_candidate(const Examinee& solver) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const Case c = net(seed, 5, 1, 0.1, 0.01, 1, 0.05);
     State state = c.scene.start;
-    inextensible::WorkCounters nobodys;
+    WorkCounters nobodys;
     Positions candidate;
     inextensible::unconstrained_step(*c.scene.problem, state, c.step, candidate, nobodys);
     if (!stepper_for(solver, c)->advance(state, c.step))
@@ -413,7 +393,7 @@ Findings consistency(const Examinee& solver) {
   constexpr double not_vanishing = 0.68;
   const Case c = short_chain("chain", links + 1, 0.32 / 80, 80, 1e-6);
   // How far a step is iterated is a tolerance, not a part of the formula: it must not show.
-  inextensible::Settings settings;
+  Settings settings;
   if (complete_settings(solver.backend, {}).contains("direction_tolerance"))
     settings["direction_tolerance"] = 0.01;
   std::vector<Positions> ends;
@@ -458,7 +438,7 @@ Findings motion_in_space(const Examinee& solver) {
   const SceneParameters given{{"n", 7}};
   const auto type = find_scene("whirling_chain");
   const Case c = short_chain(type->name, 7, 0.00025, 640, 1e-6);
-  const inextensible::Problem& problem = *c.scene.problem;
+  const Problem& problem = *c.scene.problem;
   const State start = start_of(c.scene, solver.backend, c.step);
   State end = start;
   const DriveState driven = drive(*stepper_for(solver, c), end, {c.step, c.steps});
@@ -524,20 +504,20 @@ constexpr Check checks[] = {
 }  // namespace
 
 std::vector<Finding> examine(const std::string& solver, const ConformanceOptions& options) {
-  const Examinee examinee{*inextensible::find_backend(solver), options};
+  const Examinee examinee{*find_backend(solver), options};
   std::vector<Finding> findings;
   for (const Check& check : checks) {
     // In a process of its own: the solver may crash, hang or end the program.
     const Findings found = in_child(
         {check.timeout, 0, options.interrupted},
-        [&](Heartbeat& /*heartbeat*/) -> nlohmann::json {
+        [&](Heartbeat& /*heartbeat*/) -> json {
           try {
             return check.run(examinee);
           } catch (const NotTaken& reason) {  // a scene that is not taken is none to examine it on
             return Findings{not_applicable(check.name, std::string("not taken: ") + reason.what())};
           }
         },
-        [](const nlohmann::json& list) { return list.get<Findings>(); },
+        [](const json& list) { return list.get<Findings>(); },
         [&](const ChildOutcome& child) {
           return Findings{{Grade::fail, check.name, ending(child),
                            "run it alone under a debugger: the checks are in "

@@ -1,19 +1,13 @@
 // How hard cases should end, and where methods are known to end otherwise: configs/hard_cases.json.
-#include <algorithm>
-#include <cmath>
-#include <utility>
 
 #include "harness/base/files.h"
-#include "harness/base/json.h"
 #include "harness/points/schema.h"
 #include "harness/stability/hard_case.h"
 
 namespace harness {
 namespace {
 
-using inextensible::Backend;
 using inextensible::Direction;
-using nlohmann::json;
 
 constexpr std::pair<const char*, Direction> directions[] = {
     {"start", Direction::start}, {"end", Direction::end},         {"current", Direction::current},
@@ -21,9 +15,8 @@ constexpr std::pair<const char*, Direction> directions[] = {
 };
 
 bool is_about(const std::string& word, const Backend& backend) {
-  for (const auto& [name, direction] : directions) {
+  for (const auto& [name, direction] : directions)
     if (word == name) return backend.direction == direction;
-  }
   if (word == "no collider")
     return !backend.takes_collider && inextensible::is_built_in(backend.name);
   return word == backend.name || word == backend.method ||
@@ -73,11 +66,11 @@ void add_expectations(std::vector<HardCase>& cases) {
 }
 
 Expectation HardCase::expectation(const std::string& solver) const {
-  const Backend& backend = *inextensible::find_backend(solver);
+  const Backend& backend = *find_backend(solver);
   Expectation expected =
       *std::ranges::find_if(expectations, [&](const Expectation& e) { return e.about(backend); });
-  if (backend.strain_control == inextensible::StrainControl::time_step &&
-      expected.outcome == Outcome::refused && !expected.other)
+  if (backend.strain_control == StrainControl::time_step && expected.outcome == Outcome::refused &&
+      !expected.other)
     expected.other = {Outcome::survived, "no limit is promised, so that it need not be noticed"};
   return expected;
 }

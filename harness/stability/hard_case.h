@@ -2,14 +2,7 @@
 // outcome that theory or literature predicts for every solver.
 #pragma once
 
-#include <functional>
-#include <map>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "harness/stability/trial.h"
-#include "solvers/registry.h"
 
 namespace harness {
 
@@ -25,7 +18,7 @@ struct Expectation {
   std::string why;
   std::optional<Other> other = std::nullopt;
 
-  bool about(const inextensible::Backend& backend) const;
+  bool about(const Backend& backend) const;
 };
 
 struct HardCase {
@@ -47,7 +40,7 @@ std::map<std::string, std::vector<double>> hard_case_values(const std::string& p
 // Adds the expectations of configs/hard_cases.json that apply to each case.
 void add_expectations(std::vector<HardCase>& cases);
 // configs/hard_cases.json. Throws UsageError where it violates its schema.
-const nlohmann::json& hard_cases_document();
+const json& hard_cases_document();
 
 // Outcomes of a solver that are known and are not what theory expects.
 struct KnownDifference {

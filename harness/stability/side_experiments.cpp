@@ -1,14 +1,10 @@
 // What the stability sweep measures beside the matrix of hard cases.
 #include <Eigen/SPQRSupport>
-#include <cmath>
-#include <random>
 
 #include "harness/base/text.h"
-#include "harness/judge/mechanics.h"
 #include "harness/stability/cases.h"
 #include "harness/stability/stability.h"
 #include "solvers/problem/forces.h"
-#include "solvers/registry.h"
 
 namespace harness {
 
@@ -94,20 +90,13 @@ SameFrame same_frame(const SameFrameScene& wanted, std::uint64_t seed) {
   SameFrame found{.scene = wanted};
   struct Run {
     const char* solver;
-    std::unique_ptr<inextensible::Stepper> stepper;
-    inextensible::State state;
+    std::unique_ptr<Stepper> stepper;
+    State state;
   };
   std::vector<Run> runs;
-  for (const char* solver : {"fast_projection", "icd", "fast_projection"})
-    runs.push_back(
-        {solver, inextensible::make_stepper(solver, scene.problem, {wanted.strain_limit, seed, {}}),
-         scene.start});
-  std::mt19937_64 random(seed);
-  cases::add_noise(runs[2].state.x, scene.problem->pinned(), wanted.moved * scene.size, random);
-  const auto add_distance = [&](const Run& other, FrameDistances& series) {
-    series.rms.push_back(rms_distance(scene, runs[0].state.x, other.state.x));
-    series.largest.push_back(max_distance(scene, runs[0].state.x, other.state.x));
-  };
+  for (const char* solver : {"fast_projection", "icd"})
+    runs.push_back({solver, make_stepper(solver, scene.problem, {wanted.strain_limit, seed, {}}),
+                    scene.start});
   const long steps = std::lround(scene.duration / SameFrameScene::step);
   for (long i = 1; i <= steps; ++i) {
     for (Run& run : runs) {
@@ -122,8 +111,8 @@ SameFrame same_frame(const SameFrameScene& wanted, std::uint64_t seed) {
       found.first_contact = time;
     if (time > densely_until && std::abs(std::remainder(time, sample_interval)) > 1e-9) continue;
     found.times.push_back(time);
-    add_distance(runs[1], found.icd);
-    add_distance(runs[2], found.moved_start);
+    found.icd.rms.push_back(rms_distance(scene, runs[0].state.x, runs[1].state.x));
+    found.icd.largest.push_back(max_distance(scene, runs[0].state.x, runs[1].state.x));
   }
   return found;
 }

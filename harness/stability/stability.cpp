@@ -1,8 +1,5 @@
 #include "harness/stability/stability.h"
 
-#include "harness/base/errors.h"
-#include "harness/points/contestant.h"
-#include "harness/points/point_json.h"
 #include "harness/points/schema.h"
 #include "harness/stability/cases.h"
 
@@ -37,10 +34,9 @@ ExpectationCounts StabilityOutcome::counts() const {
 StabilityPlan plan_stability(const std::string& profile, const std::optional<Pattern>& solver,
                              const std::optional<Pattern>& hard_case) {
   StabilityPlan plan{{}, hard_cases(profile)};
-  for (const auto& backend : inextensible::backends()) {
+  for (const auto& backend : backends())
     if (backend.contestant && (!solver || matches(*solver, backend.name)))
       plan.solvers.emplace_back(backend.name);
-  }
   const auto selected = [&](const std::string& name) {
     return !hard_case || hard_case->found_in(name);
   };
@@ -55,11 +51,10 @@ StabilityPlan plan_stability(const std::string& profile, const std::optional<Pat
   });
   plan.freedom = selected("triangles");
   const auto has = [&](const char* name) { return std::ranges::count(plan.solvers, name) > 0; };
-  if (has("fast_projection") && has("icd")) {
+  if (has("fast_projection") && has("icd"))
     for (const double limit : {0.01, 0.001})
       plan.frames.insert(plan.frames.end(),
                          {{"drape", 21, limit}, {"drape", 31, limit}, {"patch", 21, limit}});
-  }
   std::erase_if(plan.frames,
                 [&](const auto& scene) { return !selected("same frame " + scene.name()); });
   if (plan.solvers.empty()) throw UsageError("no contestant matches --solver");
@@ -79,7 +74,7 @@ StabilityOutcome run_stability(const StabilityPlan& plan, std::uint64_t seed,
       for (const std::string& solver : plan.solvers) {
         stop_if_asked();
         const std::string key = cell_key(c.name, solver);
-        const nlohmann::json result = events.once(key, [&] {
+        const json result = events.once(key, [&] {
           return to_json(run_isolated_trial(c.build, solver, seed, events.interrupted));
         });
         StabilityCell cell{&c, solver, trial_result_of(result), c.expectation(solver)};
@@ -97,9 +92,8 @@ StabilityOutcome run_stability(const StabilityPlan& plan, std::uint64_t seed,
       }
     }
     if (plan.freedom) {
-      for (const int n : {11, 21, 41}) {
+      for (const int n : {11, 21, 41})
         for (const Freedom& f : degrees_of_freedom(n)) outcome.freedom.push_back(f);
-      }
     }
     for (const SameFrameScene& scene : plan.frames) {
       stop_if_asked();
@@ -119,26 +113,22 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LargestStep, scene, solver, step, failing_ste
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Freedom, mesh, vertices, constraints, rank, degrees_of_freedom)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FrameDistances, rms, largest)
 
-static void to_json(nlohmann::json& object, const SameFrame& frame) {
+static void to_json(json& object, const SameFrame& frame) {
   object = {{"scene", frame.scene.name()},
             {"side", frame.scene.side},
             {"strain_limit", frame.scene.strain_limit},
             {"step", frame.scene.step},
-            {"start_moved_by", frame.scene.moved},
             {"first_contact", frame.first_contact},
             {"times", frame.times},
             {"icd", frame.icd},
-            {"moved_start", frame.moved_start},
             {"stopped", frame.stopped}};
 }
 
 namespace {
 
-using nlohmann::json;
-
 json known_json() {
   json list = json::array();
-  for (const KnownDifference& known : known_differences()) {
+  for (const KnownDifference& known : known_differences())
     for (const std::string& hard_case : known.hard_cases)
       list.push_back({{"case", hard_case},
                       {"solver", known.solver},
@@ -146,7 +136,6 @@ json known_json() {
                       {"outcome", known.outcome},
                       {"reason", known.reason},
                       {"mends", known.remedy}});
-  }
   return list;
 }
 

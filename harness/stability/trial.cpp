@@ -7,17 +7,13 @@
 
 namespace harness {
 
-using inextensible::Positions;
-using inextensible::State;
-using nlohmann::json;
-
-TrialJudge::TrialJudge(const Trial& trial, const inextensible::Backend& backend,
-                       const inextensible::Stepper& stepper, TrialResult& result)
+TrialJudge::TrialJudge(const Trial& trial, const Backend& backend, const Stepper& stepper,
+                       TrialResult& result)
     : trial_(trial),
       problem_(*trial.scene.problem),
       stepper_(stepper),
       result_(result),
-      limit_promised_(backend.strain_control == inextensible::StrainControl::strain_limit),
+      limit_promised_(backend.strain_control == StrainControl::strain_limit),
       mass_(problem_.total_mass()),
       free_(backend.conserves_momentum && problem_.pinned().empty() && !problem_.collider()),
       energy_known_(strain_range(problem_, trial.scene.start.x).most <= trial.strain_limit),
@@ -45,13 +41,11 @@ bool TrialJudge::after(const State& state, const DriveState& driven) {
 
 // They only grow, but for a factorization's size, which is that of the last one.
 bool TrialJudge::judge_counters(const DriveState& driven) {
-  const inextensible::WorkCounters& now = stepper_.work();
+  const WorkCounters& now = stepper_.work();
   bool falls = false;
-  for (const auto& counter : inextensible::work_counters) {
-    if (const auto* count =
-            std::get_if<std::int64_t inextensible::WorkCounters::*>(&counter.member))
+  for (const auto& counter : inextensible::work_counters)
+    if (const auto* count = std::get_if<std::int64_t WorkCounters::*>(&counter.member))
       falls = falls || now.**count < work_.**count;
-  }
   if (falls) return broke(Promise::counters, "a counter fell");
   return (now.steps == work_.steps + 1 && driven.result.iterations >= 0) ||
          broke(Promise::counters, "steps or iterations are wrong");
@@ -61,10 +55,9 @@ bool TrialJudge::after(const Positions& filtered, const State& state, double h) 
   if (!state.x.allFinite() || !state.v.allFinite())
     return broke(Promise::finite, "a state that is not finite was accepted");
   if (!judge_strain(filtered, state) || !judge_contact(state)) return false;
-  for (const int pin : problem_.pinned()) {
+  for (const int pin : problem_.pinned())
     if (state.x.col(pin) != start_.x.col(pin))
       return broke(Promise::pins, "pinned vertex " + std::to_string(pin) + " moved");
-  }
   return judge_momentum(state, h) && judge_energy(state, h);
 }
 
@@ -102,7 +95,7 @@ bool TrialJudge::judge_contact(const State& state) {
   constexpr double visible_depth = 1e-6;  // in scene sizes
   if (!problem_.contact_inside()) return true;
   if (!judge_limit(strain_range(problem_, state.x), "after the collision filter ")) return false;
-  inextensible::WorkCounters work;
+  WorkCounters work;
   if (!obstacle_) obstacle_.emplace(problem_);
   obstacle_->place(state.time);
   obstacle_->find(state.x, visible_depth * trial_.scene.size, inside_, work);
@@ -146,23 +139,22 @@ bool TrialJudge::judge_gain(std::optional<double> gain, double release) {
 
 namespace {
 
-inextensible::Settings settings_of(const Trial& trial, const inextensible::Backend& backend) {
-  inextensible::Settings settings;
+Settings settings_of(const Trial& trial, const Backend& backend) {
+  Settings settings;
   if (const auto own = trial.settings.find(backend.name); own != trial.settings.end())
     settings = own->second;
-  if (backend.strain_control == inextensible::StrainControl::stiffness &&
-      std::isfinite(trial.stiffness))
+  if (backend.strain_control == StrainControl::stiffness && std::isfinite(trial.stiffness))
     settings.try_emplace("stiffness", trial.stiffness);
   return settings;
 }
 
 // One attempt, at the trial's own step or with smaller ones where it is refused.
-Outcome attempt(const Trial& trial, const inextensible::Backend& backend, std::uint64_t seed,
-                bool smaller, TrialResult& result) {
+Outcome attempt(const Trial& trial, const Backend& backend, std::uint64_t seed, bool smaller,
+                TrialResult& result) {
   const auto begin = Clock::now();
   inextensible::check_state(*trial.scene.problem, trial.scene.start);
-  const auto stepper = inextensible::make_stepper(
-      backend.name, trial.scene.problem, {trial.strain_limit, seed, settings_of(trial, backend)});
+  const auto stepper = make_stepper(backend.name, trial.scene.problem,
+                                    {trial.strain_limit, seed, settings_of(trial, backend)});
   State state = trial.scene.start;
   TrialJudge judge(trial, backend, *stepper, result);
   const DriveState driven = drive(*stepper, state, {trial.step, trial.steps, smaller ? 10 : 0},
@@ -170,7 +162,7 @@ Outcome attempt(const Trial& trial, const inextensible::Backend& backend, std::u
   result.work = stepper->work();
   if (smaller) result.smallest_step = driven.smallest;
   if (driven.end == DriveState::End::refused) {
-    const inextensible::StepResult& step = driven.result;
+    const StepResult& step = driven.result;
     result.detail =
         concat("step ", result.work.steps, ": ", to_string(step.status), ", ", step.detail);
     if (step.worst_edge >= 0) result.detail += "; edge " + std::to_string(step.worst_edge);
@@ -189,7 +181,7 @@ TrialResult run_trial(const std::function<Trial()>& build, const std::string& so
                       std::uint64_t seed) {
   TrialResult result;
   const auto begin = Clock::now();
-  const inextensible::Backend& backend = *inextensible::find_backend(solver);
+  const Backend& backend = *find_backend(solver);
   try {
     const Trial trial = build();
     result.fixed = result.outcome = attempt(trial, backend, seed, false, result);

@@ -2,20 +2,9 @@
 // question is whether the solver survives, and whether it keeps its promises.
 #pragma once
 
-#include <functional>
-#include <map>
-#include <nlohmann/json.hpp>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "harness/base/fields.h"
 #include "harness/judge/drive.h"
 #include "harness/judge/energy.h"
 #include "harness/judge/mechanics.h"
-#include "harness/points/point.h"
-#include "harness/scenes/scene.h"
-#include "solvers/problem/obstacle.h"
 
 namespace harness {
 
@@ -42,9 +31,9 @@ struct Trial {
   double strain_limit = 0.01;
   // N, of methods without a limit of their own: one that would keep it. Unknown: their default.
   double stiffness = unknown;
-  std::map<std::string, inextensible::Settings> settings = {};  // by solver
+  std::map<std::string, Settings> settings = {};  // by solver
   // Changes the state before a step (moves a pin, adds noise). Energy is then not judged.
-  std::function<void(inextensible::State& state, int step)> disturb = nullptr;
+  std::function<void(State& state, int step)> disturb = nullptr;
   // Energy may exceed the start's by this fraction of the scale (weight times size, plus kinetic
   // energy at the start). Negative: not judged. A start that violates the limit sets energy free in
   // its first step; it is judged from there on.
@@ -69,8 +58,8 @@ struct TrialResult {
   double strain_first_second = unknown, strain_last_second = unknown;
   double energy_gain = unknown, momentum_defect = unknown;
   double seconds = 0;
-  inextensible::WorkCounters work;  // of the last attempt
-  Promise broken = Promise::none;   // of a wrong outcome; not in files
+  WorkCounters work;               // of the last attempt
+  Promise broken = Promise::none;  // of a wrong outcome; not in files
 };
 
 // Never throws: what goes wrong is the outcome. `build` makes the trial; a std::invalid_argument
@@ -84,8 +73,8 @@ TrialResult run_isolated_trial(const std::function<Trial()>& build, const std::s
                                const std::function<bool()>& interrupted = nullptr);
 
 // By its name; reading throws json::exception for any other text.
-inline void to_json(nlohmann::json& name, Outcome outcome) { name = to_string(outcome); }
-void from_json(const nlohmann::json& name, Outcome& outcome);
+inline void to_json(json& name, Outcome outcome) { name = to_string(outcome); }
+void from_json(const json& name, Outcome& outcome);
 
 inline constexpr std::tuple trial_fields{
     field("outcome", &TrialResult::outcome, "", "with smaller steps where its own was refused"),
@@ -105,8 +94,8 @@ inline constexpr std::tuple trial_fields{
           "largest, relative, where nothing outside acts", may_be_absent),
     field("seconds", &TrialResult::seconds, "s", "wall, both attempts")};
 
-nlohmann::json to_json(const TrialResult& result);
-TrialResult trial_result_of(const nlohmann::json& object);
+json to_json(const TrialResult& result);
+TrialResult trial_result_of(const json& object);
 
 // The checks of one run, step after step: the harness's word against the solver's. Disturbs the
 // steps of a drive, judges them, and raises the figures of a result. Stops where a step decides the
@@ -114,13 +103,13 @@ TrialResult trial_result_of(const nlohmann::json& object);
 class TrialJudge : public Observer {
  public:
   // All must outlive this.
-  TrialJudge(const Trial& trial, const inextensible::Backend& backend,
-             const inextensible::Stepper& stepper, TrialResult& result);
+  TrialJudge(const Trial& trial, const Backend& backend, const Stepper& stepper,
+             TrialResult& result);
 
-  int before(inextensible::State& state, const DriveState& driven);
-  bool after(const inextensible::State& state, const DriveState& driven);
+  int before(State& state, const DriveState& driven);
+  bool after(const State& state, const DriveState& driven);
   // The same of a step of h seconds. filtered: positions before the collision filter.
-  bool after(const inextensible::Positions& filtered, const inextensible::State& state, double h);
+  bool after(const Positions& filtered, const State& state, double h);
   // The outcome, after the last step.
   Outcome finish();
 
@@ -129,16 +118,16 @@ class TrialJudge : public Observer {
   bool fail(Outcome outcome, const std::string& why, Promise broken = Promise::none);
   bool broke(Promise promise, const std::string& why) { return fail(Outcome::wrong, why, promise); }
   bool judge_counters(const DriveState& driven);
-  bool judge_strain(const inextensible::Positions& filtered, const inextensible::State& state);
+  bool judge_strain(const Positions& filtered, const State& state);
   bool judge_limit(const StrainRange& worst, const char* when);
-  bool judge_contact(const inextensible::State& state);
-  bool judge_momentum(const inextensible::State& state, double h);
-  bool judge_energy(const inextensible::State& state, double h);
+  bool judge_contact(const State& state);
+  bool judge_momentum(const State& state, double h);
+  bool judge_energy(const State& state, double h);
   bool judge_gain(std::optional<double> gain, double release);
 
   const Trial& trial_;
-  const inextensible::Problem& problem_;
-  const inextensible::Stepper& stepper_;
+  const Problem& problem_;
+  const Stepper& stepper_;
   TrialResult& result_;
   Outcome outcome_ = Outcome::survived;
   bool limit_promised_;  // the solver claims to keep the trial's strain limit
@@ -149,8 +138,8 @@ class TrialJudge : public Observer {
                          // violates the limit
   EnergyRecord energy_;
   double release_ = 0;  // of energy by slack in the last step
-  inextensible::State start_;
-  inextensible::WorkCounters work_;  // before the step
+  State start_;
+  WorkCounters work_;  // before the step
   // With contact inside only: where the obstacle is, and what is in it.
   std::optional<inextensible::Obstacle> obstacle_;
   std::vector<inextensible::ContactPlane> inside_;

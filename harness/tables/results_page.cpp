@@ -1,6 +1,5 @@
 #include <iterator>
 
-#include "harness/analysis/findings.h"
 #include "harness/base/text.h"
 #include "harness/claims/claims.h"
 #include "harness/tables/tables.h"
@@ -129,9 +128,8 @@ void print_planes(std::ostream& out, const std::vector<json>& sweeps) {
   });
   for (const auto& [title, planes] : grouped(all, title_of)) {
     out << "### " << title << "\n\n";
-    for (const Finding& finding : findings_of(planes)) {
+    for (const Finding& finding : findings_of(planes))
       for (const std::string& sentence : finding.sentences) out << sentence << ' ';
-    }
     out << span_of_errors(planes);
     for (const Plane& plane : planes) {
       if (plane.sweep == "strain") print_attribution(out, plane);
@@ -224,9 +222,8 @@ void print_answers(std::ostream& out, const NamedResult& result) {
     std::ranges::stable_sort(
         given, {}, [](const json& row) { return std::abs(number_of(row.at("deviation"))); });
     std::vector<double> orders;
-    for (const json& row : given) {
+    for (const json& row : given)
       if (!row.at("order").is_null()) orders.push_back(row.at("order"));
-    }
     const double exact = answer.at("exact");
     const auto words = [&](const json& row) {
       return plain(row.at("value"), exact == 0 ? 2 : 4) + ", " + quoted(row.at("solver"));
@@ -283,15 +280,6 @@ void print_sources(std::ostream& out, const std::vector<NamedResult>& results) {
   print_markdown(out, table);
 }
 
-// "0.1 %, error 1.2 %"; in parentheses if the error exceeds the headline's.
-std::string reach_text(const std::optional<Reach>& reach) {
-  if (!reach) return "-";
-  const std::string text =
-      percent(reach->strain_limit) + ", error " +
-      (std::isfinite(reach->error) ? number_text(100 * reach->error, 2) + " %" : "not known");
-  return reach->right ? text : "(" + text + ")";
-}
-
 }  // namespace
 
 Table outcomes_in(const json& document) {
@@ -326,12 +314,11 @@ Table differences_in(const json& document) {
   for (const json& cell : document.at("matrix")) {
     if (cell.at("as_expected")) continue;
     std::string reason = "not known: " + cell.at("detail").get<std::string>();
-    for (const json& known : document.at("known_differences")) {
+    for (const json& known : document.at("known_differences"))
       if (cell.at("known_difference") && known.at("case") == cell.at("case") &&
           known.at("solver") == cell.at("solver"))
         reason = known.at("reason").get<std::string>() +
                  "; would fix it: " + known.at("mends").get<std::string>();
-    }
     const std::string fixed = cell.at("at_fixed_step"), outcome = cell.at("outcome");
     std::vector<std::string> row{
         cell.at("case"), cell.at("solver"), cell.at("expected_at_fixed_step"),
@@ -339,11 +326,10 @@ Table differences_in(const json& document) {
     const auto same = std::ranges::find_if(table.rows, [&row](const auto& other) {
       return std::equal(row.begin() + 1, row.end(), other.begin() + 1);
     });
-    if (same == table.rows.end()) {
+    if (same == table.rows.end())
       table.rows.push_back(std::move(row));
-    } else {
+    else
       same->front() += ", " + row.front();  // a solver's cases that end alike share a row
-    }
   }
   return table;
 }
@@ -367,38 +353,15 @@ void print_results_page(std::ostream& out, const std::vector<NamedResult>& resul
          "`u`: with untuned settings. Errors are over the scene's size.\n\n";
   print_planes(out, sweeps);
   for (const SceneTable& about : scene_tables) {
-    for (const NamedResult& result : results) {
+    for (const NamedResult& result : results)
       if (!is_hard(result)) print_scene(out, result, about);
-    }
   }
   for (const NamedResult& result : answers) print_answers(out, result);
-  for (const NamedResult& result : results) {
+  for (const NamedResult& result : results)
     if (is_hard(result)) print_hard_cases(out, result);
-  }
   print_sources(out, all);
 } catch (const json::exception& error) {
   throw UsageError(std::string("a result file is incomplete: ") + error.what());
-}
-
-void print_budgets(std::ostream& out, const std::vector<BudgetTable>& places) {
-  for (const BudgetTable& place : places) {
-    Table table{{"method"}};
-    for (const double budget : place.budgets)
-      table.head.push_back(number_text(1e3 * budget) + " ms a frame");
-    std::string none;
-    for (const Budgeted& row : place.rows) {
-      if (std::ranges::none_of(row.reached, [](const auto& reach) { return reach.has_value(); })) {
-        append(none, quoted(row.row));
-        continue;
-      }
-      table.rows.push_back({row.row});
-      for (const auto& reach : row.reached) table.rows.back().push_back(reach_text(reach));
-    }
-    out << "### " << scene_words(place.scene) << ", " << place.vertices << " vertices\n\n";
-    print_markdown(out, table);
-    if (!none.empty()) out << "\nNo run is that fast: " << none << ".\n";
-    out << '\n';
-  }
 }
 
 }  // namespace harness

@@ -19,7 +19,6 @@ void print_outcomes(std::ostream& out, const json& document);
 // of `bench answers`. Throws UsageError for incomplete documents.
 void print_results_page(std::ostream& out, const std::vector<NamedResult>& results,
                         const std::vector<NamedResult>& answers = {});
-void print_budgets(std::ostream& out, const std::vector<analysis::BudgetTable>& tables);
 
 // Hard cases: counts of outcomes by solver; and unexpected outcomes with their reasons if known.
 Table outcomes_in(const json& document);

@@ -1,5 +1,4 @@
 
-#include "harness/analysis/findings.h"
 #include "harness/base/text.h"
 #include "harness/tables/tables.h"
 
@@ -197,9 +196,8 @@ void print_sweep(std::ostream& out, const json& document, const std::string& fil
   print_grid(out, planes);
   out << "(~: too close to the next, or too few samples, to tell; u: with untuned settings; errors "
          "are over the scene's size)\n";
-  for (const Plane& plane : planes) {
+  for (const Plane& plane : planes)
     if (all) print_everybody(out, plane);
-  }
   for (const Finding& finding : findings_of(planes)) {
     out << '\n' << finding.subject << ":\n";
     for (const std::string& sentence : finding.sentences) out << sentence << '\n';

@@ -26,9 +26,8 @@ void SpdSolver::solve_coordinates(Eigen::Matrix4Xd& rhs) {
 }
 
 const SpdSolverRow& spd_solver(std::string_view name) {
-  for (const SpdSolverRow& row : spd_solvers()) {
+  for (const SpdSolverRow& row : spd_solvers())
     if (row.name == name) return row;
-  }
   throw std::invalid_argument("no linear solver '" + std::string(name) + "' in this library");
 }
 

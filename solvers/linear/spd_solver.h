@@ -65,7 +65,6 @@ enum class Precision { full, mixed };                      // of the factors
 
 struct SpdSolverRow {
   const char* name;
-  const char* summary;
   SymmetricPattern::Triangle triangle;  // that it reads
   Takes takes;                          // those of any pattern want rows in an order of little fill
   std::unique_ptr<SpdSolver> (*make)(SymmetricPattern);

@@ -21,15 +21,11 @@ constexpr auto upper = SymmetricPattern::Triangle::upper;
 // CHOLMOD's supernodal code transposes an upper triangle at every factorization; the up-looking
 // codes a lower one.
 constexpr SpdSolverRow table[] = {
-    {"tridiagonal", "L D L^T from both ends", upper, Takes::tridiagonal, make_tridiagonal},
-    {"block_tridiagonal", "the same of 3 x 3 blocks", upper, Takes::block_tridiagonal,
-     make_block_tridiagonal},
-    {"multifrontal", "multifrontal Cholesky, laid out once", lower, Takes::any,
-     make<MultifrontalCholesky<double>>},
-    {"multifrontal_mixed", "the same in single precision where that is enough", lower, Takes::any,
-     make<MixedCholesky>, Precision::mixed},
-    {"cholmod_supernodal", "CHOLMOD's supernodal Cholesky", lower, Takes::any,
-     make_cholmod_supernodal},
+    {"tridiagonal", upper, Takes::tridiagonal, make_tridiagonal},
+    {"block_tridiagonal", upper, Takes::block_tridiagonal, make_block_tridiagonal},
+    {"multifrontal", lower, Takes::any, make<MultifrontalCholesky<double>>},
+    {"multifrontal_mixed", lower, Takes::any, make<MixedCholesky>, Precision::mixed},
+    {"cholmod_supernodal", lower, Takes::any, make_cholmod_supernodal},
 };
 
 }  // namespace

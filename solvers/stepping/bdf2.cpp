@@ -64,11 +64,10 @@ Bdf2Stepper::Bdf2Stepper(std::shared_ptr<const Problem> problem,
 
 bool Bdf2Stepper::unconstrained(const State& state, double h, Positions& x) {
   const bool known = history_.leads_to(state, h);
-  if (!in_step(implicit_, h)) {
+  if (!in_step(implicit_, h))
     explicit_solve(state, h, known, x);
-  } else if (!implicit_solve(state, h, known, x)) {
+  else if (!implicit_solve(state, h, known, x))
     return false;
-  }
   for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
   return true;
 }

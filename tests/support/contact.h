@@ -14,10 +14,9 @@ struct Ground final : Collider {
             Memory& /*memory*/, std::vector<ContactPlane>& planes,
             WorkCounters& /*work*/) const override {
     planes.clear();
-    for (Eigen::Index v = 0; v < x.cols(); ++v) {
+    for (Eigen::Index v = 0; v < x.cols(); ++v)
       if (inverse_mass[static_cast<std::size_t>(v)] > 0 && normal.dot(x.col(v)) - offset < -depth)
         planes.push_back({static_cast<int>(v), normal, offset});
-    }
   }
   bool plane_at(const Eigen::Vector3d& /*p*/, ContactPlane& plane,
                 WorkCounters& /*work*/) const override {

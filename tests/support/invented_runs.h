@@ -9,17 +9,18 @@ namespace harness::invented {
 inline PointResult sampled(const std::string& scene, const std::string& sweep,
                            const std::string& contestant, double limit, int vertices, double step,
                            double seconds) {
-  PointResult point;
-  PointSpec& spec = point.spec;
-  spec.sweep = sweep;
-  spec.scene = scene;
-  spec.scene_parameters = {{"n", vertices}, {"duration", 1}, {"mass", 1}, {"gravity", 9.81}};
-  spec.resolution = spec.vertices = vertices;
-  spec.contestant = contestant;
-  spec.solver = contestant.substr(0, contestant.find("_untuned"));
-  spec.strain_limit = limit;
-  spec.step = step;
-  point.status = PointStatus::ok;
+  PointResult point(
+      {.sweep = sweep,
+       .scene = scene,
+       .scene_parameters = {{"n", vertices}, {"duration", 1}, {"mass", 1}, {"gravity", 9.81}},
+       .resolution = vertices,
+       .vertices = vertices,
+       .contestant = contestant,
+       .solver = contestant.substr(0, contestant.find("_untuned")),
+       .settings = {},
+       .strain_limit = limit,
+       .step = step},
+      PointStatus::ok);
   for (int i = 0; i < 9; ++i) point.samples.push_back(seconds * (1 + 0.001 * i));
   return point;
 }

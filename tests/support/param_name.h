@@ -15,18 +15,16 @@ inline constexpr auto contestant_name = [](const auto& info) {
 // Those of these settings that the solver has.
 inline Settings those_of(const char* solver, const Settings& wanted) {
   Settings its;
-  for (const SettingInfo& info : find_backend(solver)->settings) {
+  for (const SettingInfo& info : find_backend(solver)->settings)
     if (const auto at = wanted.find(info.name); at != wanted.end()) its.insert(*at);
-  }
   return its;
 }
 
 template <class Fits>
 std::vector<const char*> rows_that(const Fits& fit) {
   std::vector<const char*> names;
-  for (const Backend& row : backends()) {
+  for (const Backend& row : backends())
     if (fit(row)) names.push_back(row.name);
-  }
   return names;
 }
 

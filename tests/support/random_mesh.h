@@ -142,9 +142,8 @@ inline RandomMesh random_chains(Random& random, int chains, double lightest = 1e
 // Free vertices moved by up to `size` in each coordinate.
 inline Positions perturbed(Random& random, const RandomMesh& mesh, double size) {
   Positions x = mesh.x;
-  for (Eigen::Index v = 0; v < x.cols(); ++v) {
+  for (Eigen::Index v = 0; v < x.cols(); ++v)
     if (mesh.problem->inverse_mass()[v] > 0) x.col(v) += random_vector(random, size);
-  }
   return x;
 }
 

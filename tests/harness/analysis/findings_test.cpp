@@ -1,8 +1,7 @@
-// The strain-error grid, findings and budgets of invented times.
-#include "harness/analysis/findings.h"
-
+// The strain-error grid and findings of invented times.
 #include <gtest/gtest.h>
 
+#include "harness/analysis/plane.h"
 #include "harness/points/result_file.h"
 #include "support/invented_runs.h"
 
@@ -101,7 +100,7 @@ TEST(Plane, TakesARunAtATighterLimitWhereThatIsFaster) {
 }
 
 TEST(Plane, ComparesWithTheMethodsThatThePaperHas) {
-  for (const auto& backend : inextensible::backends()) {
+  for (const auto& backend : backends()) {
     if (std::string(backend.name) != backend.method) continue;  // in another stepper
     const bool named = std::ranges::any_of(all_paper_methods, [&](const PaperMethod& method) {
       return method.name == std::string(backend.name);
@@ -140,49 +139,6 @@ TEST(Findings, NameTheFirstItsPriceAndTheBestOfThePaper) {
     EXPECT_NE(findings[0].sentences.at(0).find(sentence), std::string::npos)
         << findings[0].sentences[0];
   }
-}
-
-// The median, and the times at another rate, must not be mistaken for `seconds`.
-json framed(json run, double seconds) {
-  run["frame_times"] = {{24.0, seconds, 9.0, 9.0}, {frame_rate, 1e-6, seconds, 9.0}};
-  return run;
-}
-
-TEST(Budget, HoldsTheTightestStrainWhoseMotionIsRightWithinAFrame) {
-  const json first = document({
-      framed(run("yarn_projection", 0.1, 0.02, 1, 0.01), 0.8e-3),
-      framed(run("yarn_projection", 0.1, 0.01, 2, 0.005), 0.9e-3),  // the same limit, less error
-      framed(run("yarn_projection", 0.01, 0.02, 3, 0.03), 0.9e-3),  // its motion is wrong
-      framed(run("yarn_projection", 0.01, 0.01, 3, 0.01), 4e-3),    // at the budget itself
-      framed(run("icd", 0.1, 0.02, 1, 0.03), 2e-3),                 // never right: its least error
-      framed(run("icd", 0.01, 0.02, 1, 0.025), 3e-3),               //
-      framed(run("icd_untuned", 0.1, 0.02, 1, 0.05), 1e-3),         // in icd's row
-      framed(run("null", 0.01, 0.02, 1, 0), 1e-6),                  // does not compete
-  });
-  json failed = framed(run("shake", 0.001, 0.02, 1, 0.001), 1e-3);
-  failed["status"] = "strain_missed";
-  json bare = run("jacobi", 0.1, 0.02, 1, 0.001);  // no frames were timed
-  bare["frame_times"] = json::array();
-  const json second =
-      document({failed, bare, framed(run("yarn_projection", 0.001, 0.02, 1, 0.01), 16e-3)});
-  const json pieces = joined({first, second});
-  const auto tables = budget_tables(pieces, {1e-3, 4e-3, 16e-3, 0.5e-3});
-  ASSERT_EQ(tables.size(), 1u) << "two pieces of one scene and size";
-  const BudgetTable& table = tables.front();
-  ASSERT_EQ(table.rows.size(), 2u);
-  EXPECT_EQ(table.rows[0].row, "yarn_projection") << "the tightest strain comes first";
-  EXPECT_EQ(table.rows[1].row, "icd");
-  const auto &yarns = table.rows[0].reached, &icd = table.rows[1].reached;
-  EXPECT_EQ(yarns.at(0)->point.id(), "chain/yarn_projection/n:80/strain:0.1/h:0.01");
-  EXPECT_EQ(yarns.at(1)->point.id(), "chain/yarn_projection/n:80/strain:0.01/h:0.01");
-  EXPECT_EQ(yarns.at(2)->point.id(), "chain/yarn_projection/n:80/strain:0.001/h:0.02");
-  EXPECT_EQ(icd.at(0)->point.id(), "chain/icd_untuned/n:80/strain:0.1/h:0.02");
-  EXPECT_EQ(icd.at(1)->point.id(), "chain/icd/n:80/strain:0.01/h:0.02");
-  EXPECT_FALSE(icd.at(3)) << "no run is that fast";
-  EXPECT_FALSE(icd.at(1)->right);
-  EXPECT_TRUE(yarns.at(1)->right);
-  EXPECT_DOUBLE_EQ(yarns.at(0)->error, 0.005);
-  EXPECT_DOUBLE_EQ(yarns.at(1)->frame_seconds, 4e-3);
 }
 
 }  // namespace

@@ -11,9 +11,6 @@
 namespace harness {
 namespace {
 
-using inextensible::Positions;
-using inextensible::State;
-
 constexpr double g = 9.81;
 
 // What an answer's reading makes of the scene's exact motion.

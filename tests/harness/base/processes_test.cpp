@@ -1,6 +1,5 @@
 // Children that misbehave end, and their parents do not. One process at a time takes times; the
 // lock ends with its process, and programs started under it go on.
-#include <gtest/gtest.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 

@@ -23,12 +23,11 @@ TEST(Claims, C1ComparesSlopesAtEqualStrain) {
 TEST(Claims, C2NeedsASmallerExponentOverVertices) {
   const auto with = [](double springs, double fast, double noise = 0) {
     std::vector<json> points;
-    for (const int n : {20, 40, 80, 160}) {
+    for (const int n : {20, 40, 80, 160})
       for (const auto& [solver, exponent] :
            {std::pair("implicit_springs", springs), {"fast_projection", fast}})
         points.push_back(
             point("chain", "resolution", solver, 0.01, n, 0.01, std::pow(n / 20.0, exponent)));
-    }
     return verdict("C2", points, noise);
   };
   expect_verdicts<3>(
@@ -132,11 +131,10 @@ TEST(Claims, C6LooksAtEverySize) {
 TEST(Claims, RivalsHaveTheFasterOfTheirTunedAndUntunedSettings) {
   const auto with = [](double untuned) {
     std::vector<json> points;
-    for (const int n : {100, 400}) {
+    for (const int n : {100, 400})
       for (const auto& [contestant, seconds] :
            {std::pair("fast_projection", 1.0), {"icd", 2.0}, {"icd_untuned", untuned}})
         points.push_back(point("drape", "resolution", contestant, 0.01, n, 0.01, seconds));
-    }
     json result = document(points, 0.1);
     result["legend"] = invented::document({})["legend"];
     return verdict_in("C6", result);

@@ -63,6 +63,8 @@ assert "steps.json" in command and not any(word.startswith("/") for word in comm
 bench claims steps.json >claims.txt && [[ $(grep -c '^C[0-9]* (' claims.txt) == 16 ]] || fail "claims has no 16 rows"
 holds 'd = read("steps.json"); d["points"] = []; json.dump(d, open("nothing.json", "w"))'
 refused "is what a claim is about" claims nothing.json
+bench show steps.json --frame 1e9 >/dev/null || fail "show --frame: exit $?"
+refused "no run with frames of at most 1e-09 ms" show steps.json --frame 1e-9
 makes patch.json "${sweep[@]}" --scene patch --n 5 --limit 0.1,0.05  # not in the suite
 holds 'assert {(p["scene"], p["vertices"], p["strain_limit"]) for p in read("patch.json")["points"]} == {("patch", 25, 0.1), ("patch", 25, 0.05)}'
 

@@ -1,8 +1,6 @@
 // The rank test against scipy's numbers; changes, gates and reports.
 #include "harness/compare/comparison.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "harness/base/statistics.h"
@@ -76,14 +74,12 @@ TEST(CompareTimes, FlagsOnlyWhatTestAndBothRatiosAgreeOn) {
 }
 
 ComparedPoint point_with(const std::string& id, double iterations = 100) {
-  ComparedPoint point;
-  point.sweep = "strain";
-  point.id = id;
-  point.status = "ok";
-  point.spec = "same";
-  point.counters = {{"iterations", iterations}, {"steps", 50}};
-  point.errors = {{"max_strain", 0.009}, {"trajectory", 0.02}};
-  return point;
+  return {.sweep = "strain",
+          .id = id,
+          .status = "ok",
+          .spec = "same",
+          .counters = {{"iterations", iterations}, {"steps", 50}},
+          .errors = {{"max_strain", 0.009}, {"trajectory", 0.02}}};
 }
 
 ComparedResult result_of(std::vector<ComparedPoint> points) {

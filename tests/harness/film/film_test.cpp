@@ -10,13 +10,12 @@ namespace {
 
 FilmRun filmed(const std::string& scene, const SceneParameters& given, const Contestant& contestant,
                double limit, double step) {
-  FilmSpec spec;
-  spec.scene = scene;
-  spec.parameters = testing::parameters(scene, given);
-  spec.solvers = {contestant};
-  spec.strain_limits = {limit};
-  spec.step = step;
-  spec.frames_per_second = 32;
+  const FilmSpec spec{.scene = scene,
+                      .parameters = testing::parameters(scene, given),
+                      .solvers = {contestant},
+                      .strain_limits = {limit},
+                      .step = step,
+                      .frames_per_second = 32};
   return record(spec, [](auto&&...) {}).takes.at(0);
 }
 

@@ -15,9 +15,7 @@ namespace harness {
 namespace {
 
 using Eigen::Vector3d;
-using inextensible::State;
 using inextensible::TriangleMesh;
-using inextensible::Velocities;
 
 const Scene chain_of_four = built_scene("chain", {{"n", 4}});
 
@@ -105,12 +103,12 @@ TEST(Judge, MeasuresHowFarARunHasMoved) {
 }
 
 TEST(Strain, OfEdgesThatAreTooLongAndTooShort) {
-  inextensible::ProblemParts parts;
+  ProblemParts parts;
   parts.mass = {1, 2, 3};
   parts.edges = {{0, 1}, {1, 2}};
   parts.rest_length = {1, 2};
-  const inextensible::Problem problem(std::move(parts));
-  inextensible::Positions x = inextensible::Positions::Zero(3, 3);
+  const Problem problem(std::move(parts));
+  Positions x = Positions::Zero(3, 3);
   x.row(0) << 0, 1, 3;
   const auto expect = [&](double most, double stretch, std::size_t edge) {
     const StrainRange found = strain_range(problem, x);
@@ -144,11 +142,6 @@ TEST(Judge, MeasuresStrainBeforeAndAfterTheObstacle) {
   const Measures found = judge.finish();
   EXPECT_NEAR(found.max_strain, 0, 1e-12);
   EXPECT_NEAR(found.max_strain_after_collision, 0.2, 1e-12);
-  // One of the twelve edges is longer and one shorter by 0.2, two turn: sqrt(1.04) - 1.
-  const double turned = std::sqrt(1.04) - 1;
-  EXPECT_NEAR(found.delivered_strain_rms, std::sqrt((2 * 0.2 * 0.2 + 2 * turned * turned) / 12),
-              1e-12);
-  EXPECT_GT(found.delivered_strain_p99, 0.19);
   EXPECT_NEAR(found.rms_strain, 0, 1e-12);
 }
 
@@ -158,13 +151,13 @@ constexpr double g = 10;
 
 // One edge of 1 m, two vertices of 1 kg, thrown upwards with this speed, m/s.
 Scene pair_of_vertices(double speed = 0) {
-  inextensible::ProblemParts parts;
+  ProblemParts parts;
   parts.mass = {1, 1};
   parts.edges = {{0, 1}};
   parts.rest_length = {1};
   parts.gravity = {0, -g, 0};
   Scene scene;
-  scene.problem = std::make_shared<const inextensible::Problem>(std::move(parts));
+  scene.problem = std::make_shared<const Problem>(std::move(parts));
   scene.start.x.setZero(3, 2);
   scene.start.x(0, 1) = 1;
   scene.start.v.setZero(3, 2);
@@ -255,13 +248,13 @@ TriangleMesh box(const Vector3d& half) {
 
 // How many of single vertices with these ways cross the body.
 int crossed(const TriangleMesh& body, const std::vector<std::pair<Vector3d, Vector3d>>& ways,
-            inextensible::BodyMotion motion = {}) {
-  inextensible::ProblemParts parts;
+            BodyMotion motion = {}) {
+  ProblemParts parts;
   parts.mass.assign(ways.size(), 1);
   parts.collider = std::make_shared<inextensible::TriangleCollider>(body, 0);
   parts.body_motion = std::move(motion);
-  const inextensible::Problem problem(parts);
-  inextensible::State before{inextensible::Positions(3, ways.size()), {}}, after = before;
+  const Problem problem(parts);
+  State before{Positions(3, ways.size()), {}}, after = before;
   for (std::size_t i = 0; i < ways.size(); ++i) {
     before.x.col(i) = ways[i].first;
     after.x.col(i) = ways[i].second;
@@ -290,7 +283,7 @@ TEST(Crossings, AreWaysThroughThePlate) {
 TEST(Crossings, AreSeenWhereThePlateMoves) {
   const Vector3d still(0.1, 0.05, 0.2);
   const auto rise = [](double time) {
-    return inextensible::Pose{Eigen::Matrix3d::Identity(), Vector3d(0, 0.1 * time, 0)};
+    return Pose{Eigen::Matrix3d::Identity(), Vector3d(0, 0.1 * time, 0)};
   };
   EXPECT_EQ(crossed(box({0.5, 0.002, 0.5}), {{still, still}}), 0);
   EXPECT_EQ(crossed(box({0.5, 0.002, 0.5}), {{still, still}}, rise), 1);

@@ -10,29 +10,25 @@
 namespace harness {
 namespace {
 
-using inextensible::State;
-
 // The error of the scene's run by fast projection in BDF2, where the judge knows the scene itself.
 double error_of(const std::string& name, const SceneParameters& given,
                 const SceneParameters& changed, double h,
-                const std::function<void(inextensible::ProblemParts&)>& change = {}) {
+                const std::function<void(ProblemParts&)>& change = {}) {
   SceneParameters own = given;
   for (const auto& [parameter, value] : changed) own[parameter] = value;
   const Scene scene = built_scene(name, given);
   auto problem = built_scene(name, own).problem;
   if (change) {
-    inextensible::ProblemParts parts = inextensible::testing::parts_of(*problem);
+    ProblemParts parts = inextensible::testing::parts_of(*problem);
     change(parts);
-    problem = std::make_shared<const inextensible::Problem>(std::move(parts));
+    problem = std::make_shared<const Problem>(std::move(parts));
   }
   const auto reference = ReferenceFolder::usual()->find(name, testing::parameters(name, given));
   if (!reference) throw std::runtime_error("no reference of " + name);
   constexpr const char* solver = "fast_projection@bdf2";
-  Judge judge(scene, {.reference = reference,
-                      .velocities = inextensible::find_backend(solver)->velocities});
-  const auto stepper =
-      inextensible::make_stepper(solver, problem, {1e-5, 1, {{"min_iterations", 1.0}}});
-  State state = start_of(scene, *inextensible::find_backend(solver), h);
+  Judge judge(scene, {.reference = reference, .velocities = find_backend(solver)->velocities});
+  const auto stepper = make_stepper(solver, problem, {1e-5, 1, {{"min_iterations", 1.0}}});
+  State state = start_of(scene, *find_backend(solver), h);
   const long steps = std::lround(scene.duration / h);
   judge.before(state, h);
   drive(*stepper, state, {h, steps}, [&](const State& now, const DriveState&) {

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <cmath>
 #include <fstream>
 #include <random>
 
@@ -15,7 +14,6 @@
 namespace harness {
 namespace {
 
-using nlohmann::json;
 using testing::parameters;
 
 // Lagrange's equations in angles, dense: sum_j A_ij cos(theta_i - theta_j) l_i l_j theta_j'' +

@@ -1,9 +1,7 @@
 // Corrupted suites and result files, by the thousand, repeatably.
-#include <gtest/gtest.h>
 
 #include <random>
 
-#include "harness/base/files.h"
 #include "harness/claims/claims.h"
 #include "harness/points/context.h"
 #include "harness/run/sweep.h"

@@ -32,7 +32,7 @@ class Random {
   void fill(SceneParameters& value, bool) {
     for (const char* name : {"duration", "n", "mass"}) fill(value[name], false);
   }
-  void fill(inextensible::Settings& value, bool) {
+  void fill(Settings& value, bool) {
     value["a word"] = "value " + std::to_string(generator_());
     double number = 0;
     fill(number, false);

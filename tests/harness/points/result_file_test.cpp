@@ -1,9 +1,7 @@
 // Files that are written or committed fit their schemas, configs/*.schema.json.
 #include "harness/points/result_file.h"
 
-#include <gtest/gtest.h>
-
-#include "harness/analysis/findings.h"
+#include "harness/analysis/plane.h"
 #include "harness/base/table.h"
 #include "harness/compare/comparison.h"
 #include "harness/points/context.h"

@@ -8,13 +8,13 @@ namespace harness {
 // A run at a limit of 1 %.
 inline PointSpec spec_at(const std::string& scene, const SceneParameters& parameters,
                          const std::string& solver, double step) {
-  PointSpec spec;
-  spec.sweep = "strain";
-  spec.scene = scene;
-  spec.scene_parameters = complete_parameters(*find_scene(scene), parameters);
-  spec.contestant = spec.solver = solver;
-  spec.step = step;
-  return spec;
+  return {.sweep = "strain",
+          .scene = scene,
+          .scene_parameters = complete_parameters(*find_scene(scene), parameters),
+          .contestant = solver,
+          .solver = solver,
+          .settings = {},
+          .step = step};
 }
 
 struct FakeMachine {
@@ -87,14 +87,13 @@ inline auto error_of_step(double slope) {
 // A strain sweep of fast projection on a chain of ten.
 inline Suite suite_of_chain(std::vector<double> limits) {
   Suite suite;
-  SweepSpec& sweep = suite.sweeps.emplace_back();
-  sweep.sweep = "strain";
-  sweep.scene = "chain";
-  sweep.contestants = {{"fast_projection", "fast_projection"}};
-  sweep.limits = std::move(limits);
-  sweep.resolutions = {10};
-  sweep.finest = 1.0 / 6400;
-  sweep.refine = false;
+  suite.sweeps = {{.sweep = "strain",
+                   .scene = "chain",
+                   .contestants = {{"fast_projection", "fast_projection"}},
+                   .limits = std::move(limits),
+                   .resolutions = {10},
+                   .finest = 1.0 / 6400,
+                   .refine = false}};
   return suite;
 }
 

@@ -4,7 +4,6 @@
 #include <fstream>
 #include <random>
 
-#include "harness/base/files.h"
 #include "harness/points/result_file.h"
 #include "harness/run/fake_machine.h"
 

@@ -1,8 +1,6 @@
 // The search for settings, with objectives whose optimum is known, and with a fake clock.
 #include "harness/run/tune.h"
 
-#include <gtest/gtest.h>
-
 #include <fstream>
 #include <random>
 #include <set>
@@ -101,7 +99,7 @@ TEST(TuneSearch, ValuesStayInTheirRangeAndComeBackFromTheirPosition) {
 }
 
 // Colored Gauss-Seidel's fake time is lowest at a relaxation of 1.7 and a step of 1/200 s.
-double relaxation_of(const inextensible::Settings& settings) {
+double relaxation_of(const Settings& settings) {
   const auto found = settings.find("relaxation");
   return found == settings.end() ? 1.0 : std::get<double>(found->second);
 }
@@ -160,7 +158,7 @@ TEST(Tune, EachPlaceIsTunedForItself) {
 
 // A fast run whose motion is wrong by 5 % of the scene's size counts only if its error is unknown.
 TEST(Tune, OnlyMotionThatIsRightCounts) {
-  const auto wrong = [](const inextensible::Settings& given) { return relaxation_of(given) > 1.9; };
+  const auto wrong = [](const Settings& given) { return relaxation_of(given) > 1.9; };
   for (const bool known : {true, false}) {
     FakeMachine machine{[=](const PointSpec& spec) {
       return wrong(spec.settings) ? 0.01 : 3 - relaxation_of(spec.settings);

@@ -6,7 +6,6 @@
 
 #include <Eigen/Geometry>
 #include <iostream>
-#include <limits>
 #include <set>
 
 #include "harness/stability/stability.h"

@@ -3,13 +3,8 @@
 
 #include "support/motion.h"
 
+namespace harness {
 namespace {
-
-using harness::HardCase;
-using harness::Outcome;
-using harness::Trial;
-using harness::TrialResult;
-using inextensible::State;
 
 // Two free vertices of 1 kg, 1 m apart along x, without gravity, turning about their middle.
 Trial dumbbell(bool pinned) {
@@ -26,8 +21,8 @@ Trial dumbbell(bool pinned) {
 // What the judge makes of a step from the trial's start to a state.
 TrialResult judged(const Trial& trial, const State& state, const char* solver = "shake") {
   TrialResult result;
-  const auto stepper = inextensible::make_stepper(solver, trial.scene.problem, {});
-  harness::TrialJudge judge(trial, *inextensible::find_backend(solver), *stepper, result);
+  const auto stepper = make_stepper(solver, trial.scene.problem, {});
+  TrialJudge judge(trial, *find_backend(solver), *stepper, result);
   State start = trial.scene.start;
   judge.before(start, {});
   judge.after(state.x, state, trial.step);
@@ -84,42 +79,40 @@ TEST(TrialJudge, SeesEnergyBeyondToleranceAndSlack) {
 
 TEST(HardCases, HaveUniqueNamesAndReasonedExpectationsAboutSolversThatExist) {
   std::set<std::string> names;
-  for (const HardCase& c : harness::hard_cases("paper")) {
+  for (const HardCase& c : hard_cases("paper")) {
     EXPECT_TRUE(names.insert(c.name).second) << c.name << " twice";
     ASSERT_TRUE(!c.expectations.empty() && c.expectations.back().solvers.empty()) << c.name;
     for (const auto& e : c.expectations) {
       EXPECT_FALSE(e.other && e.other->outcome == e.outcome) << c.name;
       for (const std::string& word : e.solvers)
-        EXPECT_TRUE(std::ranges::any_of(inextensible::backends(),
-                                        [one = harness::Expectation{{word}, e.outcome, ""}](
-                                            const auto& b) { return one.about(b); }))
+        EXPECT_TRUE(std::ranges::any_of(backends(), [one = Expectation{{word}, e.outcome, ""}](
+                                                        const auto& b) { return one.about(b); }))
             << c.name << ": " << word;
     }
   }
 }
 
 TEST(KnownDifferences, AreOfCasesAndSolversThatExistAndDifferFromWhatIsExpected) {
-  const auto cases = harness::hard_cases("paper");
-  for (const harness::KnownDifference& known : harness::known_differences()) {
-    ASSERT_NE(inextensible::find_backend(known.solver), nullptr) << known.solver;
+  const auto cases = hard_cases("paper");
+  for (const KnownDifference& known : known_differences()) {
+    ASSERT_NE(find_backend(known.solver), nullptr) << known.solver;
     for (const std::string& name : known.hard_cases) {
       const auto hard_case = std::ranges::find(cases, name, &HardCase::name);
       ASSERT_NE(hard_case, cases.end()) << name;
       TrialResult result;
       result.fixed = known.fixed;
       result.outcome = known.outcome;
-      EXPECT_FALSE(harness::acceptable(hard_case->expectation(known.solver), known.solver, result))
-          << name;
-      EXPECT_EQ(harness::known_difference(name, known.solver, result), &known);
+      EXPECT_FALSE(acceptable(hard_case->expectation(known.solver), known.solver, result)) << name;
+      EXPECT_EQ(known_difference(name, known.solver, result), &known);
     }
   }
-  EXPECT_EQ(harness::known_difference("Q1", "icd", {}), nullptr);
+  EXPECT_EQ(known_difference("Q1", "icd", {}), nullptr);
 }
 
 // Quads: 3 n^2 - 2 n (n - 1). Triangles with one diagonal: 3 n^2 - 2 n (n - 1) - (n - 1)^2.
 TEST(DegreesOfFreedom, AreThoseOfAFullRankJacobian) {
   for (const int n : {3, 8, 15}) {
-    const auto freedom = harness::degrees_of_freedom(n);
+    const auto freedom = degrees_of_freedom(n);
     ASSERT_EQ(freedom.size(), 3u);
     EXPECT_EQ(freedom[0].degrees_of_freedom, n * n + 2 * n);
     EXPECT_EQ(freedom[1].degrees_of_freedom, 4 * n - 1);
@@ -132,8 +125,8 @@ TEST(DegreesOfFreedom, AreThoseOfAFullRankJacobian) {
 
 // A difference that the table does not have fails the sweep.
 TEST(Stability, ANewDifferenceIsTold) {
-  auto plan = harness::plan_stability("quick", harness::Pattern("--solver", "shake|icd"),
-                                      harness::Pattern("--case", "^(Q1|Q4)$"));
+  auto plan =
+      plan_stability("quick", Pattern("--solver", "shake|icd"), Pattern("--case", "^(Q1|Q4)$"));
   auto outcome = run_stability(plan, 1, {});
   ASSERT_EQ(outcome.cells.size(), 4u);
   EXPECT_TRUE(outcome.complete);
@@ -151,7 +144,7 @@ TEST(Stability, StrainIsKeptOfTheFirstAndTheLastSecond) {
     Trial trial = dumbbell(true);
     trial.steps = steps;
     trial.strain_limit = 1e-6;
-    const TrialResult result = harness::run_trial([&trial] { return trial; }, "icd", 1);
+    const TrialResult result = run_trial([&trial] { return trial; }, "icd", 1);
     ASSERT_EQ(result.outcome, Outcome::survived) << result.detail;
     EXPECT_EQ(std::isnan(result.strain_first_second), steps < 200);
     EXPECT_EQ(std::isnan(result.strain_last_second), steps < 200);
@@ -162,24 +155,21 @@ TEST(Stability, StrainIsKeptOfTheFirstAndTheLastSecond) {
   }
 }
 
-// Frames of hardly moved starts are that close before contact, and ICD is within the limit's slack.
+// Before contact ICD is within the limit's slack.
 TEST(SameFrame, RunsAgreeBeforeContactAndAreComparedAfterIt) {
-  const auto found = harness::same_frame({"drape", 9, 0.01}, 1);
+  const auto found = same_frame({"drape", 9, 0.01}, 1);
   EXPECT_EQ(found.stopped, "");
   EXPECT_GT(found.first_contact, 0.01);  // 1 mm above the sphere
   EXPECT_LT(found.first_contact, 0.03);
-  const auto &icd = found.icd.rms, &moved = found.moved_start.rms;
+  const auto& icd = found.icd.rms;
   ASSERT_EQ(found.times.size(), icd.size());
-  ASSERT_EQ(found.times.size(), moved.size());
   EXPECT_NEAR(found.times.back(), 1, 1e-12);
   for (std::size_t i = 0; i < found.times.size(); ++i) {
     EXPECT_GE(found.icd.largest[i], icd[i]);
-    if (found.times[i] >= found.first_contact) continue;
-    EXPECT_GT(moved[i], 1e-11);
-    EXPECT_LT(moved[i], 1e-9);
-    EXPECT_LT(icd[i], 0.01);
+    EXPECT_TRUE(found.times[i] >= found.first_contact || icd[i] < 0.01) << found.times[i];
   }
   EXPECT_GT(icd.back(), 0);
 }
 
 }  // namespace
+}  // namespace harness

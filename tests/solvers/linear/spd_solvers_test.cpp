@@ -2,7 +2,6 @@
 // algebra; and what some of them promise beyond that.
 
 #include <Eigen/Dense>
-#include <limits>
 #include <unsupported/Eigen/KroneckerProduct>
 
 #include "solvers/linear/multifrontal_cholesky.h"
@@ -56,18 +55,16 @@ SymmetricPattern chain_pattern(int rows, int block, Triangle triangle = Triangle
 SymmetricPattern pattern_of(const MatrixXd& matrix, Triangle triangle) {
   Pairs pairs;
   for (int j = 0; j < matrix.cols(); ++j) {
-    for (int i = 0; i < j; ++i) {
+    for (int i = 0; i < j; ++i)
       if (matrix(i, j) != 0) pairs.emplace_back(i, j);
-    }
   }
   return pattern_of(static_cast<int>(matrix.rows()), pairs, triangle);
 }
 
 void write(const MatrixXd& matrix, const SymmetricPattern& pattern, SpdSolver& solver) {
-  for (int j = 0; j < pattern.n; ++j) {
+  for (int j = 0; j < pattern.n; ++j)
     for (int e = pattern.column_start[j]; e < pattern.column_start[j + 1]; ++e)
       solver.values()[e] = matrix(pattern.row_index[e], j);
-  }
 }
 
 bool mixed(const SpdSolverRow& row) { return row.precision == Precision::mixed; }

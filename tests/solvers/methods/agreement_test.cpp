@@ -1,8 +1,6 @@
 // Methods that solve the same equations by different iterations take the same steps as far as they
 // have converged. What ADMM and augmented VBD keep and remember.
 
-#include <cmath>
-
 #include "harness/judge/mechanics.h"
 #include "solvers/problem/edge_constraints.h"
 #include "solvers/registry.h"

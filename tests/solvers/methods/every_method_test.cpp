@@ -175,9 +175,8 @@ Settings impatient(std::string_view method) {
       {"yarn_projection", 20}, {"fast_projection_adaptive", 20},
       {"jacobi", 300},         {"gauss_seidel", 300},
       {"admm", 3000},          {"augmented_vbd", 3000}};
-  for (const auto& [prefix, most] : limits) {
+  for (const auto& [prefix, most] : limits)
     if (method.starts_with(prefix)) return {{"max_iterations", most}};
-  }
   return {};
 }
 
@@ -237,9 +236,8 @@ TEST_P(EveryMethod, IsTheOtherMethodOnAChainIfItSaysSo) {
 // that its velocities are of.
 TEST_P(EveryMethod, LetsWhatNoEdgeHoldsFallExactly) {
   std::vector<Settings> variants{{}};
-  for (const SettingInfo& info : row.settings) {
+  for (const SettingInfo& info : row.settings)
     for (const char* word : info.choices) variants.push_back({{info.name, std::string(word)}});
-  }
   Random random(3);
   std::vector<testing::RandomMesh> meshes{random_mesh(random, 5, 5, 0)};
   const std::pair<int, std::vector<int>> without_edges[] = {

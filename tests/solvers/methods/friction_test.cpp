@@ -2,7 +2,6 @@
 // a vertex on a turntable, and a rope round a post.
 
 #include <Eigen/Geometry>
-#include <cmath>
 #include <numbers>
 
 #include "solvers/problem/triangle_collider.h"
@@ -63,9 +62,8 @@ TEST_P(Friction, HoldsARopeOnASlopeBelowItsAngleAndSlowsItAbove) {
   slides.advance(200);
   EXPECT_LT((held.state.x - start).cwiseAbs().maxCoeff(), 1e-6);
   const double a = gravity * std::sin(angle) * 0.5;  // half of it is friction's
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < 4; ++i)
     EXPECT_NEAR(slides.state.v.col(i).dot(slides.down), a * slides.state.time, 1e-3);
-  }
 }
 
 // In every stepper friction acts for the whole of a step: a rope that slides along itself at 1 m/s

@@ -2,7 +2,6 @@
 // projection is fast projection's on a chain. Where methods fail is asked by the hard cases.
 
 #include <Eigen/Dense>
-#include <cmath>
 
 #include "solvers/methods/yarn_pass.h"
 #include "solvers/registry.h"

@@ -100,9 +100,8 @@ TEST(VertexBlockDescent, StartsWhereTheLastStepSaysThatItWillEnd) {
   constexpr double stiffness = 1e4, mass = 0.1, length = 0.1;
   const testing::HangingRope rope(links, length, mass);
   State rest = rope.start;
-  for (int i = 0; i < links; ++i) {  // each link bears what hangs on it
+  for (int i = 0; i < links; ++i)  // each link bears what hangs on it
     rest.x(1, i + 1) = rest.x(1, i) - length * (1 + (links - i) * mass * rope.gravity / stiffness);
-  }
   for (const double iterations : {1.0, 5.0}) {
     const auto stepper =
         make_stepper("vertex_block_descent", rope.problem,

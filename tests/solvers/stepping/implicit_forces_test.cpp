@@ -1,8 +1,6 @@
 // Shear, bending and drag at the end of the step: against closed forms, and against each other.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "harness/scenes/meshes.h"
 #include "solvers/registry.h"
 

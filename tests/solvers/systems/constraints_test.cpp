@@ -4,8 +4,6 @@
 
 #include <Eigen/Dense>
 #include <Eigen/SparseCore>
-#include <cmath>
-#include <numeric>
 
 #include "solvers/linear/spd_solver.h"
 #include "solvers/systems/constrained_acceleration.h"
