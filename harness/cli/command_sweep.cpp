@@ -126,6 +126,7 @@ struct SweepCommand : SweepOptions, OutputOptions {
     const auto run = [&](Journal& journal, const json& before) -> Finished {
       if (rerun_failed) forget_failures(journal);
       const auto references = ReferenceFolder::usual();
+      for (const SweepSpec& spec : suite.sweeps) std::cerr << find_scene(spec.scene)->remarks;
       report_missing_references(searches, *references);
       std::optional<TimingLock> lock;
       if (!untimed) lock.emplace(!no_wait);

@@ -30,10 +30,11 @@ double meets(const TriangleMesh& mesh, const std::array<int, 3>& triangle, const
 }
 
 // The shortest way from the middle of a face straight through the body; at most 250 faces are
-// tried.
+// tried, and ten million pairs of faces.
 double thickness_of(const TriangleMesh& mesh) {
   double least = never;
-  const std::size_t faces = mesh.triangles.size(), stride = 1 + faces / 250;
+  const std::size_t faces = mesh.triangles.size(),
+                    stride = 1 + faces / std::clamp<std::size_t>(10'000'000 / (faces + 1), 10, 250);
   for (std::size_t i = 0; i < faces; i += stride) {
     const auto& face = mesh.triangles[i];
     const Vector3d inwards = -normal_of(mesh, face);

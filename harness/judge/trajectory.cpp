@@ -174,7 +174,8 @@ Backend playback(const char* name, const char* label,
 
 std::string worst_places(const Trajectory& trajectory, const Scene& scene) {
   const Problem& problem = *scene.problem;
-  const auto* body = dynamic_cast<const inextensible::TriangleCollider*>(problem.collider());
+  inextensible::ContactPlane plane{};
+  inextensible::WorkCounters unused;
   struct Worst {
     double value = 0, time = 0;
     long place = -1;
@@ -188,8 +189,11 @@ std::string worst_places(const Trajectory& trajectory, const Scene& scene) {
     const StrainRange range = strain_range(problem, x);
     strain.raise(range.most, time, static_cast<long>(range.edge));
     const Pose pose = problem.body_motion() ? problem.body_motion()(time) : Pose{};
-    for (Eigen::Index v = 0; body && v < x.cols(); ++v)
-      depth.raise(-body->nearest(pose.inverse()(x.col(v))).signed_distance, time, v);
+    for (Eigen::Index v = 0; problem.collider() && v < x.cols(); ++v) {
+      const Eigen::Vector3d at = pose.inverse()(x.col(v));
+      if (problem.collider()->plane_at(at, plane, unused))
+        depth.raise(plane.offset - plane.normal.dot(at), time, v);
+    }
     if (problem.pins_follow_body()) continue;
     for (const int v : problem.pinned())
       pin.raise((x.col(v) - scene.start.x.col(v)).norm(), time, v);

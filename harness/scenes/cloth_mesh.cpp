@@ -52,15 +52,38 @@ void check_sides(const MeshFile& file, const std::vector<MeshFile::Face>& faces)
   }
 }
 
+// Whether the first side of a quad runs along u of the texture and not along v, and how far its
+// sides, in turn, are from these axes: degrees of the worst, twice, to compare with obliqueness().
+struct Grain {
+  bool along_u = false;
+  double oblique = 0;
+};
+
+Grain grain(const std::array<Eigen::Vector2d, 4>& at) {
+  std::array<double, 2> worst{0, 0};  // from v, u
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Eigen::Vector2d side = (at[(k + 1) % 4] - at[k]).cwiseAbs();
+    const double from_u = std::atan2(side.y(), side.x()), from_v = std::numbers::pi / 2 - from_u;
+    worst[0] = std::max(worst[0], k % 2 == 0 ? from_v : from_u);
+    worst[1] = std::max(worst[1], k % 2 == 0 ? from_u : from_v);
+  }
+  return {worst[1] <= worst[0], 360 / std::numbers::pi * std::min(worst[0], worst[1])};
+}
+
 // Triangles i and j that share the side between their corners, as a quad around it.
 struct Pairing {
-  double oblique;
+  Grain grain;  // its shape's obliqueness where the texture does not count
   std::size_t i, j;
   std::array<int, 4> quad;
 };
 
+using TextureTriangle = std::array<Eigen::Vector2d, 3>;
+
+// The best pairs whose angles, or sides over the texture if there is one, are good; no triangle is
+// in two.
 std::vector<Pairing> pairings(const std::vector<Eigen::Vector3d>& x,
-                              const std::vector<std::array<int, 3>>& triangles) {
+                              const std::vector<std::array<int, 3>>& triangles,
+                              const std::vector<TextureTriangle>& texture) {
   std::map<Side, std::pair<std::size_t, std::size_t>> first;  // triangle and corner before the side
   std::vector<Pairing> all;
   for (std::size_t j = 0; j < triangles.size(); ++j) {
@@ -68,14 +91,27 @@ std::vector<Pairing> pairings(const std::vector<Eigen::Vector3d>& x,
       const auto [found, fresh] = first.try_emplace(side_of(triangles[j], k), j, k);
       if (fresh) continue;
       const auto [i, c] = found->second;
-      const auto& t = triangles[i];
-      const std::array<int, 4> quad{t[(c + 2) % 3], t[c], triangles[j][(k + 2) % 3],
-                                    t[(c + 1) % 3]};
-      all.push_back({obliqueness(x, quad), i, j, quad});
+      const auto around = [i = i, c = c, j, k](const auto& of) {
+        return std::array{of[i][(c + 2) % 3], of[i][c], of[j][(k + 2) % 3], of[i][(c + 1) % 3]};
+      };
+      const std::array<int, 4> quad = around(triangles);
+      Grain how{false, obliqueness(x, quad)};
+      if (!texture.empty()) {
+        const auto at = around(texture);
+        const auto &t = texture[j][k], &next = texture[j][(k + 1) % 3];
+        if (!(t == at[3] && next == at[1]) && !(t == at[1] && next == at[3])) continue;  // a seam
+        how = grain(at);
+      }
+      if (how.oblique <= most_oblique) all.push_back({how, i, j, quad});
     }
   }
-  std::stable_sort(all.begin(), all.end(),
-                   [](const Pairing& a, const Pairing& b) { return a.oblique < b.oblique; });
+  std::ranges::stable_sort(all, {}, [](const Pairing& pair) { return pair.grain.oblique; });
+  std::vector<char> taken(triangles.size(), 0);
+  std::erase_if(all, [&](const Pairing& pair) {
+    if (taken[pair.i] || taken[pair.j]) return true;
+    taken[pair.i] = taken[pair.j] = 1;
+    return false;
+  });
   return all;
 }
 
@@ -290,20 +326,39 @@ ClothMesh cloth_of(const MeshFile& file, bool triangles_only) {
     return place[v];
   };
   std::vector<std::array<int, 3>> triangles;
-  for (const auto& [c, line] : faces) {
+  std::vector<TextureTriangle> texture;
+  bool textured = !triangles_only && !faces.empty() &&
+                  std::ranges::none_of(faces, [](const auto& f) { return f.texture.empty(); });
+  std::size_t aligned = 0;
+  for (const auto& [c, line, points] : faces) {
+    const auto at = [&, &of = points](std::size_t k) { return file.texture[of[k]]; };
     if (c.size() == 4 && !triangles_only) {
       cloth.quads.push_back({vertex(c[0]), vertex(c[1]), vertex(c[2]), vertex(c[3])});
+      if (!textured) continue;
+      const Grain of_quad = grain({at(0), at(1), at(2), at(3)});
+      cloth.along_u.push_back(of_quad.along_u);
+      aligned += of_quad.oblique <= most_oblique ? 1 : 0;
       continue;
     }
-    for (std::size_t k = 1; k + 1 < c.size(); ++k)
+    for (std::size_t k = 1; k + 1 < c.size(); ++k) {
       triangles.push_back({vertex(c[0]), vertex(c[k]), vertex(c[k + 1])});
+      if (textured) texture.push_back({at(0), at(k), at(k + 1)});
+    }
   }
   std::vector<char> taken(triangles.size(), 0);
-  for (const Pairing& pairing : pairings(cloth.vertices, triangles)) {
-    if (triangles_only || pairing.oblique > most_oblique || taken[pairing.i] || taken[pairing.j])
-      continue;
-    taken[pairing.i] = taken[pairing.j] = 1;
-    cloth.quads.push_back(pairing.quad);
+  if (!triangles_only) {
+    std::vector<Pairing> pairs = pairings(cloth.vertices, triangles, {});
+    if (textured) {
+      std::vector<Pairing> along = pairings(cloth.vertices, triangles, texture);
+      textured = 2 * (aligned + along.size()) >= cloth.quads.size() + pairs.size();
+      if (textured) pairs = std::move(along);
+      if (!textured) cloth.along_u.clear();  // it says nothing of warp and weft
+    }
+    for (const Pairing& pair : pairs) {
+      taken[pair.i] = taken[pair.j] = 1;
+      cloth.quads.push_back(pair.quad);
+      if (textured) cloth.along_u.push_back(pair.grain.along_u);
+    }
   }
   for (std::size_t t = 0; t < triangles.size(); ++t)
     if (!taken[t]) cloth.triangles.push_back(triangles[t]);
@@ -320,6 +375,8 @@ ClothMesh refined(const ClothMesh& mesh, int n) {
   if (n == 1) return mesh;
   Refinement refinement{mesh, n};
   for (const auto& quad : mesh.quads) refinement.cut(quad);
+  for (const char along : mesh.along_u)
+    refinement.fine.along_u.insert(refinement.fine.along_u.end(), n * n, along);
   for (const auto& triangle : mesh.triangles) refinement.cut(triangle);
   for (const auto& [a, b] : mesh.ropes)
     for (int i = 0; i < n; ++i)
@@ -393,12 +450,17 @@ Draft cloth_draft(const ClothMesh& mesh, const SceneParameters& p) {
   }
   if (p.at("bending") > 0) {
     if (mesh.medial) parts.bending = hinges_of(mesh, p.at("bending"));
+    std::set<Side> weft;
+    for (std::size_t q = 0; q < mesh.along_u.size(); ++q)
+      for (const std::size_t k : {0, 2})
+        weft.insert(side_of(mesh.quads[q], mesh.along_u[q] ? k + 1 : k));
     for (const auto& [a, b, c] : yarns_of(mesh)) {
-      if (held(a, b, c)) continue;
+      const double rigidity =
+          p.at("bending") * (weft.contains(side(a, b)) ? p.at("weft_bending") : 1);
+      if (held(a, b, c) || rigidity == 0) continue;
       const double before = length(a, b), after = length(b, c);
       const double width = area[b] / (0.5 * (before + after));
-      parts.bending.push_back(
-          inextensible::yarn_bending(a, b, c, before, after, p.at("bending") * width));
+      parts.bending.push_back(inextensible::yarn_bending(a, b, c, before, after, rigidity * width));
     }
   }
   parts.implicit_forces = true;

@@ -15,6 +15,8 @@ struct ClothMesh {
   std::vector<std::array<int, 3>> triangles;  // what is left
   std::vector<std::array<int, 2>> ropes = {};
   std::vector<int> in_file = {};  // of each vertex, its place in the file; empty once it is refined
+  // Of each quad, whether its first side runs along the texture's u, which is warp; empty: unknown.
+  std::vector<char> along_u = {};
   std::vector<char> held = {};    // of each vertex, whether a scene pins it
   std::vector<char> loaded = {};  // whether a weight hangs there
   // Vertices are the midpoints of another mesh's sides, and triangles join those of one triangle.
@@ -22,7 +24,8 @@ struct ClothMesh {
 };
 
 // Quads of a file's faces: triangles are joined to quads where two make one whose angles are within
-// `most_oblique` of right ones, the best first. Faces of more corners are fans of triangles.
+// `most_oblique` of right ones, the best first, or whose sides run along the texture's axes, where
+// that makes at least half as many quads. Faces of more corners are fans of triangles.
 // Lines are ropes. Vertices that neither has are left out. With `triangles` nothing is joined.
 // Throws UsageError for what distinct_faces() refuses, and for sides of more than two faces.
 ClothMesh cloth_of(const MeshFile& file, bool triangles = false);
@@ -51,8 +54,9 @@ ParameterInfos with_cloth_parameters(const ParameterInfos& own, const ClothDefau
 // diagonal bears G (l gamma)^2 / 4 of a square sheared by gamma); yarns bend, straight at rest, and
 // triangles of midpoints against each other, flat at rest;
 // all forces act as they are at the end of a step. Parameters: density (kg/m^2), gravity, shear
-// (N/m), bending (N m), drag (N s/m^3), duration, and line_density (kg/m) if there are ropes. Left
-// to the caller: the scene's size, and what is not at rest there.
+// (N/m), bending (N m), drag (N s/m^3), duration, line_density (kg/m) if there are ropes, and
+// weft_bending (of weft over that of warp) if the texture tells them apart. Left to the caller: the
+// scene's size, and what is not at rest there.
 Draft cloth_draft(const ClothMesh& mesh, const SceneParameters& p);
 
 // Its vertices and constraints.

@@ -2,8 +2,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cctype>
+#include <cmath>
 #include <cstdlib>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "harness/base/errors.h"
@@ -15,24 +18,49 @@ namespace {
 
 // Those of the format that say nothing about vertices, faces and lines.
 constexpr std::string_view left_out[] = {
-    "vt",       "vn",       "vp",   "g",     "o",     "s",    "mg",   "usemtl",     "mtllib",
-    "usemap",   "maplib",   "lod",  "bevel", "p",     "deg",  "bmat", "step",       "cstype",
-    "curv",     "curv2",    "surf", "con",   "parm",  "trim", "hole", "scrv",       "sp",
-    "c_interp", "d_interp", "end",  "ctech", "stech", "call", "csh",  "shadow_obj", "trace_obj"};
+    "vn",       "vp",   "g",     "o",     "s",    "mg",   "usemtl",     "mtllib",   "usemap",
+    "maplib",   "lod",  "bevel", "p",     "deg",  "bmat", "step",       "cstype",   "curv",
+    "curv2",    "surf", "con",   "parm",  "trim", "hole", "scrv",       "sp",       "c_interp",
+    "d_interp", "end",  "ctech", "stech", "call", "csh",  "shadow_obj", "trace_obj"};
 
-// "7", "7/1/3", "7//3", "-1": corners count from 1, or backwards from the last vertex so far.
-int corner_of(const std::string& word, std::size_t vertices, const std::string& where) {
-  char* rest = nullptr;
-  const long number = std::strtol(word.c_str(), &rest, 10);
-  if (rest == word.c_str() || (*rest != '\0' && *rest != '/'))
-    throw UsageError(where + ": '" + shortened(word) +
-                     "' is not a corner of a face, such as 7 or 7/1/3");
-  const auto count = static_cast<long>(vertices);
-  const long index = number < 0 ? count + number : number - 1;
-  if (number == 0 || index < 0 || index >= count)
-    throw UsageError(concat(where, ": no vertex ", number, " among the ", count, " so far"));
-  return static_cast<int>(index);
+// The next word from `at` on; empty at the end of the line. Numbers are read as far as they go.
+std::string_view next_word(const char*& at) {
+  while (*at != 0 && std::isspace(static_cast<unsigned char>(*at)) != 0) ++at;
+  const char* begin = at;
+  while (*at != 0 && std::isspace(static_cast<unsigned char>(*at)) == 0) ++at;
+  return {begin, at};
 }
+
+struct Reader {
+  MeshFile& mesh;
+  int line = 0;
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw UsageError(concat("'", mesh.path, "', line ", line, ": ", what));
+  }
+
+  // The place, from 0 on, that an index means: from 1, or backwards from the last one so far.
+  int place_of(long index, long count, const char* what) const {
+    const long place = index < 0 ? count + index : index - 1;
+    if (index == 0 || place < 0 || place >= count)
+      fail(concat("no ", what, ' ', index, " among the ", count, " so far"));
+    return static_cast<int>(place);
+  }
+
+  // "7", "7/1/3", "7//3", "-1"; the texture's point is -1 where there is none.
+  std::array<int, 2> corner_of(std::string_view word) const {
+    char* rest = nullptr;
+    const long vertex = std::strtol(word.data(), &rest, 10);
+    const char* end = word.data() + word.size();
+    if (rest == word.data() || (rest < end && *rest != '/'))
+      fail("'" + shortened(std::string(word)) + "' is not a corner of a face, such as 7 or 7/1/3");
+    const int place = place_of(vertex, std::ssize(mesh.vertices), "vertex");
+    if (end - rest < 2 || rest[1] == '/') return {place, -1};
+    return {place, place_of(std::strtol(rest + 1, nullptr, 10), std::ssize(mesh.texture), "vt")};
+  }
+
+  void read(const char* at);
+};
 
 // The next line without its comment, and with those that it is continued by.
 bool next_line(std::istream& file, std::string& line, int& number) {
@@ -50,26 +78,47 @@ bool next_line(std::istream& file, std::string& line, int& number) {
   return false;
 }
 
-void read_line(std::istringstream words, const std::string& where, int line, MeshFile& mesh) {
-  std::string word;
-  words >> word;
-  if (word == "v") {
-    Eigen::Vector3d v;
-    words >> v.x() >> v.y() >> v.z();
-    if (!words || !v.allFinite()) throw UsageError(where + ": a vertex needs three numbers");
-    mesh.vertices.push_back(v);
-  } else if (word == "f") {
-    MeshFile::Face& face = mesh.faces.emplace_back(MeshFile::Face{{}, line});
-    while (words >> word) face.corners.push_back(corner_of(word, mesh.vertices.size(), where));
-    if (face.corners.size() < 3) throw UsageError(where + ": a face needs three corners or more");
-  } else if (word == "l") {
-    for (int before = -1, corner = 0; words >> word; before = corner) {
-      corner = corner_of(word, mesh.vertices.size(), where);
-      if (before >= 0) mesh.ropes.push_back({before, corner});
+void Reader::read(const char* at) {
+  const std::string_view key = next_word(at);
+  const auto numbers = [&](auto& to, const char* what) {
+    for (double& number : to.reshaped()) {
+      char* rest = nullptr;
+      number = std::strtod(at, &rest);
+      if (rest == at || !std::isfinite(number)) fail(what);
+      at = rest;
     }
-  } else if (!word.empty() && std::ranges::find(left_out, word) == std::end(left_out)) {
-    throw UsageError(where + ": '" + shortened(word) + "' is no keyword of an OBJ file");
+  };
+  if (key == "v") {
+    numbers(mesh.vertices.emplace_back(), "a vertex needs three numbers");
+  } else if (key == "vt") {
+    numbers(mesh.texture.emplace_back(), "a texture's point needs two numbers");
+  } else if (key == "f") {
+    MeshFile::Face& face = mesh.faces.emplace_back(MeshFile::Face{{}, line});
+    for (std::string_view word; !(word = next_word(at)).empty();) {
+      const auto [vertex, point] = corner_of(word);
+      face.corners.push_back(vertex);
+      if (point >= 0) face.texture.push_back(point);
+    }
+    if (face.corners.size() < 3) fail("a face needs three corners or more");
+    if (face.texture.size() != face.corners.size()) face.texture.clear();
+  } else if (key == "l") {
+    int before = -1;
+    for (std::string_view word; !(word = next_word(at)).empty();) {
+      const int corner = corner_of(word)[0];
+      if (before >= 0) mesh.ropes.push_back({before, corner});
+      before = corner;
+    }
+  } else if (!key.empty() && std::ranges::find(left_out, key) == std::end(left_out)) {
+    fail("'" + shortened(std::string(key)) + "' is no keyword of an OBJ file");
   }
+}
+
+// Each vertex by the one that stands for it.
+void replace(MeshFile& file, const std::vector<int>& first) {
+  for (MeshFile::Face& face : file.faces)
+    for (int& corner : face.corners) corner = first[corner];
+  for (auto& rope : file.ropes)
+    for (int& end : rope) end = first[end];
 }
 
 }  // namespace
@@ -86,10 +135,8 @@ MeshFile read_mesh_file(const std::string& path) {
   if (content.starts_with("\xEF\xBB\xBF")) content.erase(0, 3);
   std::istringstream file(content);
   MeshFile mesh{path, {}, {}};
-  int number = 0;
-  for (std::string line; next_line(file, line, number);)
-    read_line(std::istringstream(line), "'" + path + "', line " + std::to_string(number), number,
-              mesh);
+  Reader reader{mesh};
+  for (std::string line; next_line(file, line, reader.line);) reader.read(line.c_str());
   if (mesh.faces.empty() && mesh.ropes.empty())
     throw UsageError("'" + path +
                      "' has no faces and no lines: is it a mesh in Wavefront's OBJ format?");
@@ -128,15 +175,28 @@ void weld(MeshFile& file, double distance) {
     }
     if (first[v] == static_cast<int>(v)) in_cell[at].push_back(first[v]);
   }
-  for (MeshFile::Face& face : file.faces)
-    for (int& corner : face.corners) corner = first[corner];
-  for (auto& rope : file.ropes)
-    for (int& end : rope) end = first[end];
+  replace(file, first);
+}
+
+void sew(MeshFile& file) {
+  std::vector<char> of_face(file.vertices.size(), 0);
+  for (const MeshFile::Face& face : file.faces)
+    for (const int corner : face.corners) of_face[corner] = 1;
+  std::vector<int> first(file.vertices.size());
+  std::iota(first.begin(), first.end(), 0);
+  const auto closed = [&](const std::array<int, 2>& ends) {
+    const auto [a, b] = ends;
+    if (!of_face[a] || !of_face[b] || file.vertices[a] != file.vertices[b]) return false;
+    std::ranges::replace(first, first[b], first[a]);
+    return true;
+  };
+  file.sewn = static_cast<int>(std::erase_if(file.ropes, closed));
+  if (file.sewn > 0) replace(file, first);
 }
 
 std::vector<MeshFile::Face> distinct_faces(const MeshFile& file) {
   std::vector<MeshFile::Face> faces;
-  std::set<std::set<int>> known;
+  std::set<std::vector<int>> known;
   const auto number = [](int vertex) { return std::to_string(vertex + 1); };
   for (const MeshFile::Face& face : file.faces) {
     const std::size_t n = face.corners.size();
@@ -160,7 +220,9 @@ std::vector<MeshFile::Face> distinct_faces(const MeshFile& file) {
       throw UsageError(file.name(face) + ": it crosses itself, its corners are not in turn");
     if (!(area.norm() > 1e-9 * longest * longest))
       throw UsageError(file.name(face) + ": it has no area, its corners lie on one line");
-    if (known.emplace(face.corners.begin(), face.corners.end()).second) faces.push_back(face);
+    std::vector<int> corners = face.corners;
+    std::ranges::sort(corners);
+    if (known.insert(std::move(corners)).second) faces.push_back(face);
   }
   return faces;
 }

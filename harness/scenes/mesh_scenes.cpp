@@ -93,12 +93,13 @@ Condition read_pins(const std::string& text, const MeshFile& file) {
 
 // The files, read once for the scenes of all parameters.
 struct MeshModel {
-  std::string description;
+  std::string description, remarks;
   std::string name, identity;  // name: with the hash of all that the scene is made of
   Condition pinned, loaded;    // empty: nothing is
   ClothMesh cloth, start;      // unstretched, and where it begins
   bool midpoints = false;      // triangles by the midpoints of their sides
   inextensible::TriangleMesh body;
+  std::shared_ptr<const inextensible::TriangleCollider> checked;  // of the body; null: known before
   std::vector<inextensible::Pose> poses;  // of the body at equal intervals; empty: it stays
   std::optional<double> floor;            // its height
 
@@ -118,54 +119,38 @@ ClothMesh simulated(const MeshModel& model, ClothMesh cloth, const ClothMesh& st
 // against their neighbours are turned. Throws UsageError where a side has not two faces.
 inextensible::TriangleMesh body_of(const MeshFile& file) {
   inextensible::TriangleMesh body{file.vertices, {}};
-  for (const auto& [corners, line] : distinct_faces(file)) {
+  for (const auto& [corners, line, texture] : distinct_faces(file)) {
     for (std::size_t k = 1; k + 1 < corners.size(); ++k)
       body.triangles.push_back({corners[0], corners[k], corners[k + 1]});
   }
-  std::map<std::pair<int, int>, std::vector<std::size_t>> at_side;
-  const auto side = [&](std::size_t t, std::size_t k) {
-    const auto& corners = body.triangles[t];
-    return std::pair{corners[k], corners[(k + 1) % 3]};
-  };
-  const auto undirected = [](std::pair<int, int> s) -> std::pair<int, int> {
-    return std::minmax(s.first, s.second);
-  };
-  for (std::size_t t = 0; t < body.triangles.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k) at_side[undirected(side(t, k))].push_back(t);
-  for (const auto& [s, faces] : at_side) {
-    if (faces.size() == 2) continue;
-    throw UsageError(
-        "'" + file.path + "' is not a body to collide with: the side between vertices " +
-        std::to_string(s.first + 1) + " and " + std::to_string(s.second + 1) + " has " +
-        std::to_string(faces.size()) +
-        (faces.size() == 1 ? " face, a closed surface has 2; if corners are doubled, --weld 1e-6"
-                           : " faces, a closed surface has 2"));
-  }
-  std::vector<char> known(body.triangles.size(), 0);
-  for (std::size_t seed = 0; seed < known.size(); ++seed) {
+  const inextensible::TriangleSides sides = inextensible::sides_of(body.triangles);
+  if (sides.faces != 2)
+    throw UsageError(concat("'", file.path,
+                            "' is not a body to collide with: the side between vertices ",
+                            sides.a + 1, " and ", sides.b + 1, " has ", sides.faces,
+                            sides.faces == 1 ? " face" : " faces", ", a closed surface has 2",
+                            sides.faces == 1 ? "; if corners are doubled, --weld 1e-6" : ""));
+  const auto first = [&](int side) { return body.triangles[side / 3][side % 3]; };
+  std::vector<char> known(body.triangles.size(), 0), turned = known;  // against the piece's first
+  for (int seed = 0; seed < std::ssize(known); ++seed) {
     if (known[seed]) continue;
-    std::vector<std::size_t> piece{seed};
+    std::vector<int> piece{seed};
     known[seed] = 1;
     double volume = 0;  // negative: faces are the wrong way round
     for (std::size_t i = 0; i < piece.size(); ++i) {
       const auto [a, b, c] = body.triangles[piece[i]];
-      volume += body.vertices[a].dot(body.vertices[b].cross(body.vertices[c]));
-      for (std::size_t k = 0; k < 3; ++k) {
-        const auto here = side(piece[i], k);
-        for (const std::size_t t : at_side[undirected(here)]) {
-          if (known[t]) continue;
-          known[t] = 1;
-          piece.push_back(t);
-          for (std::size_t other = 0; other < 3; ++other) {
-            if (side(t, other) != here) continue;  // both run along it the same way
-            std::swap(body.triangles[t][0], body.triangles[t][1]);
-            break;
-          }
-        }
+      volume += (turned[piece[i]] ? -1 : 1) *
+                body.vertices[a].dot(body.vertices[b].cross(body.vertices[c]));
+      for (int side = 3 * piece[i]; side < 3 * piece[i] + 3; ++side) {
+        const int twin = sides.twin[side], t = twin / 3;
+        if (known[t]) continue;
+        known[t] = 1;
+        piece.push_back(t);
+        turned[t] = (first(twin) == first(side)) != (turned[piece[i]] != 0);  // same way along it
       }
     }
-    for (const std::size_t t : piece)
-      if (volume < 0) std::swap(body.triangles[t][0], body.triangles[t][1]);
+    for (const int t : piece)
+      if ((turned[t] != 0) != (volume < 0)) std::swap(body.triangles[t][0], body.triangles[t][1]);
   }
   return body;
 }
@@ -175,7 +160,7 @@ MeshFile thickened(MeshFile file, double thickness) {
   const auto n = static_cast<int>(file.vertices.size());
   std::vector<Eigen::Vector3d> normal(file.vertices.size(), Eigen::Vector3d::Zero());
   std::set<std::pair<int, int>> sides;  // as faces pass them
-  for (const auto& [c, line] : file.faces) {
+  for (const auto& [c, line, texture] : file.faces) {
     for (std::size_t k = 0; k < c.size(); ++k) {
       const int a = c[k], b = c[(k + 1) % c.size()];
       if (!sides.emplace(a, b).second)
@@ -257,39 +242,38 @@ void check_cloth(const std::string& path, MeshFile file, const ClothMesh& cloth,
                             : ""));
 }
 
-void check_start(const std::string& path, const ClothMesh& cloth,
-                 const inextensible::TriangleCollider& body) {
-  int inside = 0;
-  double deepest = 0;
-  for (const Eigen::Vector3d& v : cloth.vertices) {
-    const double height = body.nearest(v).signed_distance;
-    if (!(height < -1e-9 * v.norm())) continue;
-    ++inside;
-    deepest = std::min(deepest, height);
+// How deep points are in a body: its deepest, and how many are in it.
+std::pair<double, int> depth_in(const inextensible::Collider& body,
+                                const std::vector<Eigen::Vector3d>& points) {
+  const auto n = static_cast<int>(points.size());
+  const Eigen::Map<const Eigen::Matrix3Xd> x(points.data()->data(), 3, n);
+  auto memory = body.nothing_of(n);
+  std::vector<inextensible::ContactPlane> planes;
+  inextensible::WorkCounters unused;
+  body.find(x, std::vector<double>(points.size(), 1), 0, memory, planes, unused);
+  std::pair<double, int> found{0, 0};
+  for (const auto& [v, normal, offset] : planes) {
+    const double depth = offset - normal.dot(x.col(v));
+    if (depth <= 1e-9 * x.col(v).norm()) continue;
+    found = {std::max(found.first, depth), found.second + 1};
   }
-  if (inside > 0)
-    throw UsageError(concat("'", path, "': ", inside, " of ", cloth.vertices.size(),
-                            " vertices begin inside the body, as deep as ",
-                            number_text(-deepest, 3), " of the file's units"));
+  return found;
 }
 
 // Throws UsageError where corners, sides or faces of one body begin, or have their middle, inside
 // another: their union would have faces within.
 void check_apart(const std::string& path, const inextensible::TriangleMesh& body,
                  const inextensible::TriangleMesh& others) {
-  const inextensible::TriangleCollider one(body, 0), other(others, 0);
-  const auto inside = [](const auto& mesh, const inextensible::TriangleCollider& around) {
-    const auto within = [&](const Eigen::Vector3d& p) {
-      return around.nearest(p).signed_distance < 0;
-    };
-    return std::ranges::any_of(mesh.triangles, [&](const std::array<int, 3>& t) {
+  const auto reaches = [](const auto& mesh, const inextensible::TriangleMesh& around) {
+    std::vector<Eigen::Vector3d> points;
+    for (const auto& t : mesh.triangles) {
       const Eigen::Vector3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]],
                             &c = mesh.vertices[t[2]];
-      return within(a) || within((a + b) / 2) || within((b + c) / 2) || within((c + a) / 2) ||
-             within((a + b + c) / 3);
-    });
+      points.insert(points.end(), {a, (a + b) / 2, (b + c) / 2, (c + a) / 2, (a + b + c) / 3});
+    }
+    return depth_in(inextensible::TriangleCollider(around, 0), points).second > 0;
   };
-  if (inside(body, other) || inside(others, one))
+  if (reaches(body, others) || reaches(others, body))
     throw UsageError("'" + path + "' reaches into another body: bodies must be apart");
 }
 
@@ -338,6 +322,25 @@ std::optional<double> number_of(const std::map<std::string, std::string>& parts,
   return value;
 }
 
+// What is left out, or other than its exporter may have meant, for people.
+std::string remarks_of(const MeshFile& file) {
+  std::set<int> of_faces;
+  for (const MeshFile::Face& face : file.faces)
+    of_faces.insert(face.corners.begin(), face.corners.end());
+  const auto threads = std::ranges::count_if(file.ropes, [&](const auto& ends) {
+    return of_faces.contains(ends[0]) && of_faces.contains(ends[1]);
+  });
+  const std::size_t doubled = file.faces.size() - distinct_faces(file).size();
+  std::string text;
+  if (file.sewn > 0)
+    text += concat("  sewing lines: ", file.sewn, " without length, their ends are one vertex\n");
+  if (threads > 0)
+    text += concat("  sewing lines: ", threads,
+                   " between faces are threads that keep their length, and are not drawn shut\n");
+  if (doubled > 0) text += concat("  faces that occur twice: ", doubled, ", each used once\n");
+  return text;
+}
+
 // What was read, and what becomes of it, for people.
 std::string description_of(const MeshModel& model, const MeshFile& file, const ClothMesh& cloth) {
   const std::vector<int> piece = pieces_of(cloth);
@@ -360,9 +363,11 @@ std::string description_of(const MeshModel& model, const MeshFile& file, const C
                            file.faces, [](const auto& face) { return face.corners.size() == 4; })),
                    " are two triangles; the other ", cloth.triangles.size(),
                    " triangles are held by springs\n");
+  if (!cloth.along_u.empty()) text += "  warp runs along the texture's u, and weft along its v\n";
   text += concat("  ", count_cloth(cloth).second,
                  " sides keep their length; pinned: ", std::ranges::count(cloth.held, char{1}),
                  " vertices; loaded: ", std::ranges::count(cloth.loaded, char{1}), "\n");
+  text += remarks_of(file);
   text += concat("  below: ", model.body.triangles.size(), " triangles of a body",
                  model.poses.empty() ? "" : " that moves",
                  model.floor ? concat(", a floor at ", *model.floor) : "", "\n");
@@ -444,6 +449,7 @@ std::shared_ptr<const MeshModel> read_model(const std::string& name) {
   const auto read = [&](const std::string& file) {
     MeshFile mesh = read_mesh_file(file);
     if (welded.value_or(0) > 0) weld(mesh, *welded);
+    sew(mesh);
     return mesh;
   };
   const MeshFile file = read(path);
@@ -456,8 +462,8 @@ std::shared_ptr<const MeshModel> read_model(const std::string& name) {
        {std::pair("body_then", "--collider-then"), {"thickness", "--thickness"}})
     if (parts.contains(part) && !parts.contains("body"))
       throw UsageError(std::string(option) + " goes with --collider");
-  if (model->floor && parts.contains("body"))
-    throw UsageError("--floor and --collider exclude each other: only one body is searched fast");
+  if (model->floor && parts.contains("body_then"))
+    throw UsageError("--floor and --collider-then exclude each other: the floor would move too");
 
   const ClothMesh cloth = simulated(*model, model->cloth, model->start);
   const bool holds = std::ranges::any_of(cloth.held, std::identity{});
@@ -471,9 +477,16 @@ std::shared_ptr<const MeshModel> read_model(const std::string& name) {
                      "HEIGHT or --collider FILE");
   check_cloth(path, file, cloth, model->has_body(), welded.has_value());
   model->description = description_of(*model, file, cloth);
-  if (model->body.triangles.empty()) return model;
+  model->remarks = remarks_of(file);
+  // What has this content has been checked before.
+  if (model->body.triangles.empty() || !expected.empty()) return model;
   try {
-    check_start(path, model->start, inextensible::TriangleCollider(model->body, 0));
+    model->checked = std::make_shared<const inextensible::TriangleCollider>(model->body, 0);
+    const auto [deepest, inside] = depth_in(*model->checked, model->start.vertices);
+    if (inside > 0)
+      throw UsageError(concat("'", path, "': ", inside, " of ", model->start.vertices.size(),
+                              " vertices begin inside the body, as deep as ",
+                              number_text(deepest, 3), " of the file's units"));
   } catch (const std::invalid_argument& error) {
     throw UsageError("'" + parts["body"] + "' is not a body to collide with: " + error.what());
   }
@@ -526,7 +539,10 @@ Scene build_mesh(const MeshModel& model, const SceneParameters& p) {
   const auto loaded = static_cast<double>(std::ranges::count(cloth.loaded, char{1}));
   for (std::size_t v = 0; v < start.vertices.size(); ++v)
     if (cloth.loaded[v]) draft.parts.mass[v] += p.at("load") / loaded;
-  if (model.has_body()) {
+  if (model.checked && !model.floor && p.at("scale") == 1 && p.at("up") == 1) {
+    draft.parts.collider =
+        std::make_shared<const inextensible::TriangleCollider>(*model.checked, p.at("friction"));
+  } else if (model.has_body()) {
     inextensible::TriangleMesh body = model.body;
     for (Eigen::Vector3d& v : body.vertices) v = placed(v, p);
     if (model.floor) {
@@ -538,13 +554,13 @@ Scene build_mesh(const MeshModel& model, const SceneParameters& p) {
     }
     draft.parts.collider =
         std::make_shared<const inextensible::TriangleCollider>(std::move(body), p.at("friction"));
-    if (!model.poses.empty()) {
-      std::vector<inextensible::Pose> poses;
-      for (const inextensible::Pose& pose : model.poses) poses.push_back(placed(pose, p));
-      const double interval = p.at("duration") / static_cast<double>(poses.size() - 1);
-      draft.parts.body_motion = motion_through(std::move(poses), interval);
-      draft.scene.energy_bound = std::numeric_limits<double>::infinity();  // it does work
-    }
+  }
+  if (!model.poses.empty()) {
+    std::vector<inextensible::Pose> poses;
+    for (const inextensible::Pose& pose : model.poses) poses.push_back(placed(pose, p));
+    const double interval = p.at("duration") / static_cast<double>(poses.size() - 1);
+    draft.parts.body_motion = motion_through(std::move(poses), interval);
+    draft.scene.energy_bound = std::numeric_limits<double>::infinity();  // it does work
   }
   draft.scene.size = box.diagonal().norm();
   return finished(std::move(draft));
@@ -579,6 +595,8 @@ SceneType mesh_scene(const std::string& name) {
   if (model->has_body())
     own.push_back({"friction", 0.3, "Coulomb coefficient of body and floor", zero_too, 1e3});
   if (!model->cloth.ropes.empty()) own.push_back({"line_density", 0.05, "of lines, kg/m", 0, 1e4});
+  if (!model->cloth.along_u.empty())
+    own.push_back({"weft_bending", 1, "bending rigidity of weft over that of warp", zero_too, 1e6});
   if (model->loaded) own.push_back({"load", 1, "on the vertices of --load together, kg", 0, 1e6});
   return {.name = model->name,
           .summary = "cloth of your own",
@@ -591,7 +609,8 @@ SceneType mesh_scene(const std::string& name) {
               },
           .like = model->has_body() ? "drape" : "patch",
           .identity = model->identity,
-          .description = model->description};
+          .description = model->description,
+          .remarks = model->remarks};
 }
 
 }  // namespace harness

@@ -65,6 +65,7 @@ struct SceneType {
   // A hash of the files that the scene is made of. Empty: the name says all.
   std::string identity = {};
   std::string description = {};  // of a mesh, in lines: what was read, and what becomes of it
+  std::string remarks = {};      // those of the lines that a run says too
   std::string reference = {};    // the .npz file of its reference; empty: it is looked for by name
 
   std::string kind() const { return like.empty() ? name : like; }

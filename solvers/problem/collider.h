@@ -41,10 +41,11 @@ class Collider {
   Collider& operator=(const Collider&) = delete;
   virtual ~Collider() = default;
 
-  // What find() remembers of each vertex between calls, a row each: normal and offset of a plane
-  // with the obstacle behind it. It makes calls cheaper, and changes no answer.
+  // What find() remembers of each vertex between calls, a row each for every piece of the
+  // obstacle: normal and offset of a plane with the piece behind it. It makes calls cheaper, and
+  // changes no answer.
   using Memory = Eigen::MatrixX4d;
-  static Memory nothing_of(int vertices) {  // planes with everything behind them
+  virtual Memory nothing_of(int vertices) const {  // planes with everything behind them
     Memory memory = Memory::Zero(vertices, 4);
     memory.col(3).setConstant(std::numeric_limits<double>::infinity());
     return memory;
@@ -52,7 +53,7 @@ class Collider {
 
   // Replaces `planes` by one for every vertex of x (3 x n, m) that is deeper than `depth` inside
   // the obstacle, but for those of inverse mass 0: through the nearest point of the surface, across
-  // the way there. By ascending vertex. `memory` has n rows.
+  // the way there. By ascending vertex. `memory` comes from nothing_of(n).
   virtual void find(const Eigen::Matrix3Xd& x, const std::vector<double>& inverse_mass,
                     double depth, Memory& memory, std::vector<ContactPlane>& planes,
                     WorkCounters& work) const = 0;

@@ -9,7 +9,7 @@ class Obstacle {
  public:
   // The problem has a collider, and outlives this.
   explicit Obstacle(const Problem& problem)
-      : problem_(problem), memory_(Collider::nothing_of(problem.vertices())) {
+      : problem_(problem), memory_(problem.collider()->nothing_of(problem.vertices())) {
     if (problem.body_motion()) seen_.resize(3, problem.vertices());
   }
 

@@ -1,26 +1,13 @@
-// Collision of vertices against a closed triangle mesh: signed distance from the nearest triangle,
-// with the sign from angle-weighted pseudonormals (Baerentzen and Aanaes 2005).
-//
-// A uniform grid over the mesh's box lists for each cell every triangle that is nearest to some
-// point of the cell (those no farther from its centre than the nearest one plus its diagonal),
-// found by refining an octree. Cells wholly outside are empty. Of a convex mesh planes are enough:
-// a point is inside if it is behind all of them, and its nearest point is its foot on the plane
-// that it is least behind, or most in front of; cells list only planes that can be this one.
-// A plane that a point is not behind, of a triangle or of the box, shows that it is outside: the
-// one that did so last is asked first, of several vertices side by side.
+// Collision of vertices against closed triangle meshes. Each piece of the mesh has a grid of its
+// own, so that a floor does not make the cells of a body on it coarse; of pieces that overlap a
+// vertex leaves that which it is deepest in.
 #pragma once
 
-#include <array>
-#include <span>
+#include <memory>
 
-#include "solvers/problem/collider.h"
+#include "solvers/problem/closed_surface.h"
 
 namespace inextensible {
-
-struct TriangleMesh {
-  std::vector<Eigen::Vector3d> vertices;      // m
-  std::vector<std::array<int, 3>> triangles;  // counter-clockwise seen from outside; closed
-};
 
 // Icosahedron whose faces are split in four `subdivisions` times and pushed out to the sphere: 20 *
 // 4^subdivisions faces. Mirror symmetric in all three coordinate planes through its centre.
@@ -30,7 +17,11 @@ class TriangleCollider final : public Collider {
  public:
   // friction: Coulomb coefficient. Throws std::invalid_argument for a mesh that is not closed.
   TriangleCollider(TriangleMesh mesh, double friction);
+  // The same mesh with another friction, and the same grids.
+  TriangleCollider(const TriangleCollider& same, double friction)
+      : mesh_(same.mesh_), friction_(friction), pieces_(same.pieces_) {}
 
+  Memory nothing_of(int vertices) const override;
   void find(const Eigen::Matrix3Xd& x, const std::vector<double>& inverse_mass, double depth,
             Memory& memory, std::vector<ContactPlane>& planes, WorkCounters& work) const override;
   bool plane_at(const Eigen::Vector3d& p, ContactPlane& plane, WorkCounters& work) const override;
@@ -38,53 +29,15 @@ class TriangleCollider final : public Collider {
   int triangles() const override { return static_cast<int>(mesh_.triangles.size()); }
   const TriangleMesh& mesh() const { return mesh_; }
 
-  struct Nearest {
-    Eigen::Vector3d point;   // on the mesh, m
-    Eigen::Vector3d normal;  // outward pseudonormal there, unit
-    double signed_distance;  // m, negative inside
-  };
-  // Exact; inside the mesh's box by way of the grid.
+  // Of the piece of least signed distance.
+  using Nearest = ClosedSurface::Nearest;
   Nearest nearest(const Eigen::Vector3d& p) const;
-  // The slow, obvious route: over all triangles. What the tests compare with.
-  Nearest nearest_by_all(const Eigen::Vector3d& p) const { return nearest_among(lists_[deep], p); }
+  Nearest nearest_by_all(const Eigen::Vector3d& p) const;
 
  private:
-  struct Closest {  // on one triangle
-    Eigen::Vector3d point;
-    double squared;
-    int feature;  // 0 face; 1, 2, 3 edge after corner feature - 1; 4, 5, 6 corner feature - 4
-  };
-  Closest closest(int triangle, const Eigen::Vector3d& p) const;
-  Nearest nearest_among(std::span<const int> triangles, const Eigen::Vector3d& p) const;
-  void find_pseudonormals();
-  void check_orientation();
-  void lay_out_grid();
-  void refine(const Eigen::Vector3i& cell, int size, const std::vector<int>& candidates);
-  void refine_planes(const Eigen::Vector3i& cell, int size, const std::vector<int>& candidates);
-  void fill(const Eigen::Vector3i& cell, int size, int list);
-  // Whether p, vertex v in a cell that is not outside, is deeper than `depth` inside the mesh; if
-  // so, `plane` keeps it out. Of a convex mesh v's row of `memory` is then the plane that shows
-  // that it is not, or will once it has pushed it out.
-  bool touches(std::span<const int> list, const Eigen::Vector3d& p, double depth, Eigen::Index v,
-               Memory& memory, ContactPlane& plane) const;
-  // If p is outside the box, a plane of the box that p is in front of.
-  void show_outside(const Eigen::Vector3d& p, Memory::RowXpr witness) const;
-  // The triangle of the list whose plane p is least behind, or most in front of.
-  int least_behind(std::span<const int> list, const Eigen::Vector3d& p, double& distance) const;
-  int cell_at(const Eigen::Vector3d& p) const;  // of cell_; outside where p is outside the box
-  std::size_t cell_index(const Eigen::Vector3i& cell) const;
-
-  static constexpr int resolution = 32;  // cells an axis, a power of two
-  static constexpr int outside = -1;     // a cell without a list
-  static constexpr int deep = 0;         // the list of all triangles
   TriangleMesh mesh_;
   double friction_;
-  bool convex_ = false;
-  std::vector<std::array<Eigen::Vector3d, 7>> pseudonormal_;  // per triangle, by feature
-  Eigen::Vector3d low_, cell_size_, inverse_cell_size_;
-  std::vector<int> cell_;                   // its list, or outside
-  std::vector<std::vector<int>> lists_;     // triangles
-  std::vector<Eigen::RowVector4d> planes_;  // of the faces: normal and offset
+  std::shared_ptr<const std::vector<ClosedSurface>> pieces_;
 };
 
 }  // namespace inextensible

@@ -148,11 +148,14 @@ TEST(MeshScene, IsWhatItsExporterMeans) {
   continued.insert(continued.find(" 2//1"), " \\\r\n");
   const Scene expected = built_scene(mesh(plain));
   for (const std::string& text :
-       {"\xEF\xBB\xBF" + plain, plain + "vt 0 1\nusemtl cotton # blue\n",
+       {"\xEF\xBB\xBF" + plain,
+        "\xEF\xBB\xBFv 9 9 9\n" + std::regex_replace(plain, std::regex("(\\d+)//1"), "-$1"),
+        plain + "vt 0 1\nusemtl cotton # blue\n",
         plain.substr(0, plain.size() - 1) + " # the last face\n", double_sided, continued,
         "v 9 9 9\n" + std::regex_replace(plain, std::regex("(\\d+)//1"), "-$1"),
         std::regex_replace(plain, std::regex("f 1//1 2//1 5//1 4//1"), "f 1 2 5\nf 1 5 4")})
     EXPECT_EQ(joined_places(built_scene(mesh(text))), joined_places(expected)) << text;
+  EXPECT_NE(find_scene(mesh(double_sided))->remarks.find("twice: 1"), std::string::npos);
   const Scene fan = built_scene(
       mesh("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 0 1 0\nf 2 3 4 5 6 1\n", ",pins=v1"));
   EXPECT_EQ(fan.triangles.size(), 4) << "a face of six corners";
@@ -236,6 +239,8 @@ TEST(MeshScene, WhatCanBeNoClothIsRefusedInALine) {
       {scene_of("line", two + "v 0 2 0\nf 1 2 3 4\nf 1 4 5\n"), "face 2 (line 7): it has no area"},
       {scene_of("bowtie", two + "f 1 2 4 3\n"), "it crosses itself"},
       {scene_of("one", two + "f 1 2 3\n"), "is constrained"},
+      {scene_of("seam", two + "v 0 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nf 1 2 3 4\nf 5 6 7 8\n"),
+       "in 2 pieces, 1 of them pinned nowhere; corners lie on each other: --weld"},
       {scene_of("fan", two + "v 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 2 5\n"),
        "between vertices 1 and 2 belongs to more than two faces"},
   };
@@ -274,6 +279,67 @@ TEST(MeshScene, LinesAreRopes) {
 TEST(MeshScene, LinesHoldCloth) {
   const std::string swing = square(3) + "v 0 1 0\nl 10 1\nl 10 3\n";
   EXPECT_EQ(built_scene(mesh(swing, ",pins=v10")).problem->constraints(), 12 + 2);
+}
+
+// A second panel below, joined by lines: of no length they sew, and longer ones are said to stay.
+TEST(MeshScene, LinesBetweenPanelsAreSewnOrReported) {
+  const auto panels = [](double gap) {
+    return square(3) + concat("v 0 ", -1 - gap, " 0\nv 1 ", -1 - gap, " 0\nv 1 -2 0\nv 0 -2 0\n",
+                              "f 10 11 12 13\nl 7 10\nl 9 11\n");
+  };
+  const Scene sewn = built_scene(mesh(panels(0)));
+  EXPECT_EQ(sewn.problem->vertices(), 9 + 2);
+  EXPECT_EQ(sewn.problem->constraints(), 10 + 4);
+  EXPECT_NE(find_scene(mesh(panels(0)))->remarks.find("2 without length"), std::string::npos);
+  EXPECT_EQ(built_scene(mesh(panels(0.5))).problem->constraints(), 10 + 4 + 2);
+  EXPECT_NE(find_scene(mesh(panels(0.5)))->remarks.find("2 between faces"), std::string::npos);
+  EXPECT_EQ(find_scene(mesh(square(3)))->remarks, "");
+}
+
+// Sheared by 45 degrees, the halves of its quads make better quads with their neighbours' halves.
+// The texture, which is not sheared, or turned so that it says nothing, or the other way round.
+TEST(MeshScene, TheTextureTellsWarpFromWeft) {
+  constexpr int n = 6;
+  const auto sheared = [](bool cut, double turn) {
+    std::ostringstream vertices, faces;
+    vertices.precision(17);
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j)
+        vertices << "v " << j - i << ' ' << -i << " 0\nvt "
+                 << j * std::cos(turn) - i * std::sin(turn) << ' '
+                 << j * std::sin(turn) + i * std::cos(turn) << '\n';
+    for (int i = 0; i + 1 < n; ++i)
+      for (int j = 0; j + 1 < n; ++j) {
+        const int a = i * n + j + 1, b = a + 1, c = b + n, d = a + n;
+        faces << (cut ? halves(true, a, b, c, d) : concat("f ", a, ' ', b, ' ', c, ' ', d, '\n'));
+      }
+    const std::string number = turn < 0 ? " $1" : " $1/$1";
+    return mesh(vertices.str() + std::regex_replace(faces.str(), std::regex(" (\\d+)"), number),
+                ",pins=v1");
+  };
+  const double without = -1, diagonal = 0.25 * std::numbers::pi, other = 0.5 * std::numbers::pi;
+  const auto quads = joined_places(built_scene(sheared(false, without)));
+  for (const double turn : {0.0, 0.2, other})
+    EXPECT_EQ(joined_places(built_scene(sheared(true, turn))), quads) << turn;
+  EXPECT_NE(joined_places(built_scene(sheared(true, without))), quads);
+  EXPECT_EQ(joined_places(built_scene(sheared(true, diagonal))),
+            joined_places(built_scene(sheared(true, without))));
+  for (const bool cut : {false, true}) {
+    for (const double turn : {0.0, other}) {
+      const std::string name = sheared(cut, turn);
+      for (const int fine : {1, 2}) {
+        const SceneParameters size{{"n", fine}}, limp{{"n", fine}, {"weft_bending", 0}};
+        const auto all = built_scene(name, size).problem->bending();
+        const Scene warp = built_scene(name, limp);
+        EXPECT_EQ(2 * warp.problem->bending().size(), all.size());
+        for (const auto& stencil : warp.problem->bending()) {
+          const auto y = warp.start.x.row(1);
+          EXPECT_EQ(std::abs(y[stencil.vertex[2]] - y[stencil.vertex[0]]) < 1e-9,
+                    turn == 0);  // rows run along u, or columns do
+        }
+      }
+    }
+  }
 }
 
 TEST(MeshScene, BeginsAwayFromItsRestShape) {
@@ -363,6 +429,10 @@ TEST(MeshScene, BodiesMayBeSeveralOpenAndMoving) {
   const Scene both = built_scene(cloth + ",body=" + one + ";" + two);
   EXPECT_EQ(both.problem->collider()->triangles(), 24);
   EXPECT_TRUE(refuses([&] { find_scene(cloth + ",body=" + one + ";" + later); }, "apart"));
+  const Scene standing = built_scene(cloth + ",body=" + one + ",floor=-1.4");
+  EXPECT_EQ(standing.problem->collider()->triangles(), 24);
+  EXPECT_TRUE(refuses(
+      [&] { find_scene(cloth + ",body=" + one + ",floor=-1.4,body_then=" + later); }, "exclude"));
   const Scene moving = built_scene(cloth + ",body=" + one + ",body_then=" + later,
                                    {{"duration", 2}, {"scale", 0.5}});
   const inextensible::Pose half = moving.problem->body_motion()(1);

@@ -21,6 +21,18 @@ TriangleMesh spiky(Random& random, int subdivisions) {
   return mesh;
 }
 
+// A wide block just below.
+void add_floor(TriangleMesh& mesh) {
+  const auto first = static_cast<int>(mesh.vertices.size());
+  for (int i = 0; i < 8; ++i)
+    mesh.vertices.emplace_back(i & 1 ? 50 : -50, i & 2 ? -1.05 : -100, i & 4 ? 50 : -50);
+  for (const auto& [a, b, c, d] : std::initializer_list<std::array<int, 4>>{
+           {0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}) {
+    mesh.triangles.push_back({first + a, first + b, first + c});
+    mesh.triangles.push_back({first + a, first + c, first + d});
+  }
+}
+
 // The foot on the plane if it lies in the triangle, else the nearest point of the three sides.
 double distance_to_triangle(const Vector3d& a, const Vector3d& b, const Vector3d& c,
                             const Vector3d& p) {
@@ -53,8 +65,9 @@ double winding_number(const TriangleMesh& mesh, const Vector3d& p) {
 
 TEST(TriangleCollider, DistanceAndSignAreRightOnAMeshThatIsNotConvex) {
   int inside = 0, outside = 0, all = 0;
-  testing::for_seeds(4, [&](testing::Random& random, std::uint64_t) {
-    const TriangleMesh mesh = spiky(random, 2);
+  testing::for_seeds(4, [&](testing::Random& random, std::uint64_t seed) {
+    TriangleMesh mesh = spiky(random, 2);
+    if (seed % 2 == 1) add_floor(mesh);
     const TriangleCollider collider(mesh, 0.3);
     for (int i = 0; i < testing::trials(3000); ++i, ++all) {
       const Vector3d p = random_vector(random, i % 3 ? 0.8 : 1.2);  // also beyond the grid's box
@@ -157,13 +170,13 @@ TEST(TriangleCollider, WhatItRemembersChangesNoAnswer) {
         x.col(v) = random_vector(random, 1.2);
         step.col(v) = random_vector(random, 0.05);
       }
-      Collider::Memory memory = Collider::nothing_of(n);
+      Collider::Memory memory = collider.nothing_of(n);
       std::vector<ContactPlane> planes, fresh;
       WorkCounters work;
       for (int time = 0; time < testing::trials(60); ++time, x += step) {
         const double depth = time % 3 * 0.05;
         collider.find(x, inverse_mass, depth, memory, planes, work);
-        Collider::Memory nothing = Collider::nothing_of(n);
+        Collider::Memory nothing = collider.nothing_of(n);
         collider.find(x, inverse_mass, depth, nothing, fresh, work);
         ASSERT_EQ(planes.size(), fresh.size());
         for (std::size_t i = 0; i < fresh.size(); ++i) {
@@ -175,6 +188,25 @@ TEST(TriangleCollider, WhatItRemembersChangesNoAnswer) {
     }
   });
   EXPECT_GT(found, testing::trials(100));
+}
+
+TEST(TriangleCollider, AFloorLeavesTheCellsOfABodyFine) {
+  testing::for_seeds(2, [&](Random& random, std::uint64_t) {
+    TriangleMesh mesh = spiky(random, 3);
+    const TriangleCollider alone(mesh, 0);
+    add_floor(mesh);
+    const TriangleCollider both(mesh, 0);
+    WorkCounters without, with;
+    ContactPlane plane{}, same{};
+    for (int i = 0; i < testing::trials(1000); ++i) {
+      const Vector3d p = random_vector(random, 0.6);
+      const bool near = alone.plane_at(p, plane, without);
+      ASSERT_EQ(both.plane_at(p, same, with), near);
+      ASSERT_EQ(plane.normal, same.normal);
+    }
+    EXPECT_GT(without.triangle_tests, 0);
+    EXPECT_EQ(with.triangle_tests, without.triangle_tests);
+  });
 }
 
 TEST(TriangleCollider, RefusesAMeshThatIsInsideOut) {
