@@ -168,7 +168,7 @@ void ClosedSurface::lay_out_grid() {
   std::vector<int> all(triangles());
   std::iota(all.begin(), all.end(), 0);
   cell_.assign(resolution * resolution * resolution, outside);
-  lists_.push_back(all);  // deep
+  lists_.add(all);  // deep
   convex_ ? refine_planes(Eigen::Vector3i::Zero(), resolution, all)
           : refine(Eigen::Vector3i::Zero(), resolution, all, balls);
 }
@@ -214,8 +214,7 @@ void ClosedSurface::refine_planes(const Eigen::Vector3i& cell, int size,
   }
   const bool deep_inside = distance < -half.norm() - deep_cells * cell_size_.norm();
   if (size == 1 || kept.size() <= short_list || deep_inside) {
-    fill(cell, size, static_cast<int>(lists_.size()));
-    lists_.push_back(kept);
+    fill(cell, size, lists_.add(kept));
     return;
   }
   for (int octant = 0; octant < 8; ++octant) {
@@ -269,8 +268,7 @@ void ClosedSurface::refine(const Eigen::Vector3i& cell, int size,
     rows.push_back(i);
   }
   if (size == 1) {
-    cell_[cell_index(cell)] = static_cast<int>(lists_.size());
-    lists_.push_back(std::move(kept));
+    cell_[cell_index(cell)] = lists_.add(kept);
     return;
   }
   const Balls around = balls(rows, Eigen::all);
@@ -389,19 +387,27 @@ void ClosedSurface::find(const Eigen::Matrix3Xd& x, const std::vector<double>& i
   for (Eigen::Index first = 0; first < x.cols(); first += asked_at_once) {
     const Eigen::Index end = std::min(first + asked_at_once, x.cols());
     if (end == first + asked_at_once && outside_known(memory, first_row, x, first, depth)) continue;
+    // First the cells, so that their lists come from memory side by side.
+    std::array<int, asked_at_once> cells{}, vertices{};
+    int asked = 0;
     for (Eigen::Index v = first; v < end; ++v) {
       if (inverse_mass[v] == 0 || in_front(memory, first_row, x, v, depth)) continue;
-      const Vector3d p = x.col(v);
-      const int cell = cell_at(p);
+      const int cell = cell_at(x.col(v));
       if (cell == outside) {
-        show_outside(p, memory.row(first_row + v));
+        show_outside(x.col(v), memory.row(first_row + v));
         continue;
       }
-      const std::vector<int>& list = lists_[cell];
+      __builtin_prefetch(lists_[cell].data());
+      cells[asked] = cell;
+      vertices[asked++] = static_cast<int>(v);
+    }
+    for (int i = 0; i < asked; ++i) {
+      const std::span<const int> list = lists_[cells[i]];
       work.triangle_tests += std::ssize(list);
       ContactPlane& plane = planes.emplace_back();  // filled in place: copying it stalls
-      plane.vertex = static_cast<int>(v);
-      if (!touches(list, p, depth, first_row + v, memory, plane)) planes.pop_back();
+      plane.vertex = vertices[i];
+      if (!touches(list, x.col(vertices[i]), depth, first_row + vertices[i], memory, plane))
+        planes.pop_back();
     }
   }
 }
@@ -409,7 +415,7 @@ void ClosedSurface::find(const Eigen::Matrix3Xd& x, const std::vector<double>& i
 bool ClosedSurface::plane_at(const Vector3d& p, ContactPlane& plane, WorkCounters& work) const {
   const int cell = cell_at(p);
   if (cell == outside) return false;
-  const std::vector<int>& list = lists_[cell];
+  const std::span<const int> list = lists_[cell];
   work.triangle_tests += std::ssize(list);
   if (convex_) {
     double unused = 0;

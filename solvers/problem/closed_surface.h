@@ -81,6 +81,23 @@ class ClosedSurface {
   int cell_at(const Eigen::Vector3d& p) const;  // of cell_; outside where p is outside the box
   std::size_t cell_index(const Eigen::Vector3i& cell) const;
 
+  // Lists of numbers one behind the other, each after its length.
+  class Lists {
+   public:
+    int add(const std::vector<int>& list) {  // returns what finds it
+      const auto at = static_cast<int>(numbers_.size());
+      numbers_.push_back(static_cast<int>(list.size()));
+      numbers_.insert(numbers_.end(), list.begin(), list.end());
+      return at;
+    }
+    std::span<const int> operator[](int at) const {
+      return {numbers_.data() + at + 1, static_cast<std::size_t>(numbers_[at])};
+    }
+
+   private:
+    std::vector<int> numbers_;
+  };
+
   static constexpr int resolution = 32;  // cells an axis, a power of two
   static constexpr int outside = -1;     // a cell without a list
   static constexpr int deep = 0;         // the list of all triangles
@@ -88,8 +105,8 @@ class ClosedSurface {
   bool convex_ = false;
   std::vector<std::array<Eigen::Vector3d, 7>> pseudonormal_;  // per triangle, by feature
   Eigen::Vector3d low_, cell_size_, inverse_cell_size_;
-  std::vector<int> cell_;                   // its list, or outside
-  std::vector<std::vector<int>> lists_;     // triangles
+  std::vector<int> cell_;                   // what finds its list, or outside
+  Lists lists_;                             // triangles
   std::vector<Eigen::RowVector4d> planes_;  // of the faces: normal and offset
 };
 
