@@ -73,7 +73,9 @@ DriveState drive(inextensible::Stepper& stepper, inextensible::State& state, con
   std::optional<StepController> controller;
   if (pace.halvings > 0)
     controller.emplace(
-        stepper, StepController::Settings{.largest = pace.step, .most_halvings = pace.halvings});
+        stepper, StepController::Settings{.largest = pace.step,
+                                          .most_halvings = pace.halvings,
+                                          .energy_bound = std::numeric_limits<double>::infinity()});
   DriveState driven{.last = pace.step, .smallest = pace.step, .next = pace.step};
   while (driven.steps < pace.steps) {
     const int block = observer.before(state, driven);
