@@ -102,10 +102,8 @@ StrainPasses::StrainPasses(const Problem& problem, const StrainBand& band,
   bounds_.half = static_cast<float>(0.5 * (high - low) - room);
   bounds_.target_low = static_cast<float>(std::max(square(band.target_low), low + 2 * room));
   bounds_.target_high = static_cast<float>(std::min(square(band.target_high), high - 2 * room));
-  bounds_.low_scale = 1 / (1 + bounds_.target_low);
-  bounds_.low_offset = bounds_.target_low * bounds_.low_scale;
-  bounds_.high_scale = 1 / (1 + bounds_.target_high);
-  bounds_.high_offset = bounds_.target_high * bounds_.high_scale;
+  bounds_.per_low = 1 / (1 + bounds_.target_low);
+  bounds_.per_high = 1 / (1 + bounds_.target_high);
   using Key = std::array<float, sizeof(Constants) / sizeof(float)>;
   std::map<Key, int> known;
   for (int first = 0; first < edges_.entries(); first += width) {
@@ -308,16 +306,13 @@ template <bool middle, class Ends>
       static_simd_cast<float>(m).copy_to(middles_[k / width].m[axis], element_aligned);
     }
   }
-  const Lanes<double> q = square * lanes(inverse_square_.data() + k);
-  Lanes<double> strain = q - 1;
-  // What is no edge, or has no length and so no direction, is within the limit.
-  where(q == 0, strain) = double{bounds_.middle};
+  const Lanes<double> strain = square * lanes(inverse_square_.data() + k) - 1;
   static_simd_cast<float>(strain).copy_to(group.strain, element_aligned);
 }
 
-// 1 - 1 / sqrt(1 + t), the part of an edge by which it is too long, by its Pade approximant: it is
-// exact to a float's rounding where |t| < 0.1, within 1 % to twice the length wanted, and less in
-// size beyond, so that a pass converges to the same edges and nothing overshoots.
+// 1 - 1 / sqrt(1 + t), the part of an edge by which it is too long, by its Pade approximant: exact
+// to the rounding of single precision where |t| is at most `small_excess`.
+constexpr float small_excess = 0.1F;
 template <class Real>
 [[gnu::always_inline]] inline Real excess(const Real& t) {
   return t * (0.5F + 0.25F * t) / (1 + t * (1.25F + 0.3125F * t));
@@ -347,33 +342,34 @@ template <bool middle, class Ends>
   }
   const Some strain = some(group.strain) + growth * scale;
   const Some off = strain - bounds.middle;
-  const auto violated = abs(off) > bounds.half;
+  // What is no edge, or has no length and so no direction, is within the limit.
+  const auto violated = abs(off) > bounds.half && strain != -1;
   const int violations = popcount(violated);
   if (violations == 0) return 0;
-  const auto short_of = off < 0;
-  Some s;
-  if constexpr (middle) {
-    Some strained = strain - bounds.target_high;
-    where(short_of, strained) = strain - bounds.target_low;
-    Some m[3];
-    Some q = 0, p = 0, r = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      m[axis] = some(arrays.middles[k].m[axis]) + 0.5F * e[axis];
-      q += d[axis] * d[axis];
-      p += d[axis] * m[axis];
-      r += m[axis] * m[axis];
-    }
-    const auto aligned = p > static_cast<float>(least_alignment) * q;
-    Some along = q, square = q;
-    where(aligned, along) = p;
-    where(aligned, square) = r;
-    for (int axis = 0; axis < 3; ++axis) where(aligned, d[axis]) = m[axis];
-    s = excess_along(strained, along * scale, square * scale);
+  Some strained = strain - bounds.target_high, scaled = bounds.per_high;
+  where(off < 0, strained) = strain - bounds.target_low;
+  where(off < 0, scaled) = bounds.per_low;
+  Some s = strained * scaled;
+  if (!middle && all_of(abs(s) < small_excess)) {
+    s = excess(s);
   } else {
-    Some scaled = bounds.high_scale, offset = bounds.high_offset;
-    where(short_of, scaled) = bounds.low_scale;
-    where(short_of, offset) = bounds.low_offset;
-    s = excess(Some(strain * scaled - offset));
+    Some q = 0;
+    for (int axis = 0; axis < 3; ++axis) q += d[axis] * d[axis];
+    Some along = q, square = q;
+    if constexpr (middle) {
+      Some m[3];
+      Some p = 0, r = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        m[axis] = some(arrays.middles[k].m[axis]) + 0.5F * e[axis];
+        p += d[axis] * m[axis];
+        r += m[axis] * m[axis];
+      }
+      const auto aligned = p > static_cast<float>(least_alignment) * q;
+      where(aligned, along) = p;
+      where(aligned, square) = r;
+      for (int axis = 0; axis < 3; ++axis) where(aligned, d[axis]) = m[axis];
+    }
+    s = excess_along(strained, Some(along * scale), Some(square * scale));
   }
   where(!violated, s) = 0;
   const Some sa = some(constants.share_a) * s, sb = some(constants.share_b) * s;

@@ -135,8 +135,7 @@ class StrainPasses {
   struct Bounds {        // of q - 1
     float middle, half;  // of the band
     float target_low, target_high;
-    // A strain over a target's q is 1 + strain * scale - offset.
-    float low_scale, low_offset, high_scale, high_offset;
+    float per_low, per_high;  // 1 / q of the targets
   };
   using Places = ColoredEdges::Places;
   using Displacements = ColoredEdges::Displacements;
