@@ -114,13 +114,11 @@ inline bool says(const ClaimVerdict& claim, const std::string& words) {
   return claim.measured.find(words) != std::string::npos;
 }
 
-inline constexpr double limits[] = {0.1, 0.03, 0.01, 0.003, 0.001};
-
 // Time falls off as limit^exponent.
 inline void strain_curve(std::vector<json>& points, const std::string& scene,
                          const std::string& solver, double at_ten_percent, double exponent,
                          double step = 0.01) {
-  for (const double limit : limits)
+  for (const double limit : {0.1, 0.03, 0.01, 0.003, 0.001})
     points.push_back(point(scene, "strain", solver, limit, 80, step,
                            at_ten_percent * std::pow(limit / 0.1, exponent)));
 }
