@@ -1,5 +1,8 @@
+// The answers of a result file in words and as JSON.
 #include "harness/analysis/plane.h"
+#include "harness/base/table.h"
 #include "harness/base/text.h"
+#include "harness/points/point_json.h"
 
 namespace harness::analysis {
 namespace {
@@ -147,6 +150,147 @@ std::string span_of_errors(const std::vector<Plane>& planes) {
   return concat("Errors of ", percent(headline_error), " are known up to ",
                 first < last ? number_text(first) + " or " : "", last, " s of ", duration,
                 " s: later the scene's references differ too much. ");
+}
+
+// ---- As JSON ----
+
+static json ratio_json(const std::optional<Ratio>& ratio) {
+  if (!ratio) return nullptr;
+  const bool known = ratio->known();
+  return {{"value", number(ratio->value)},
+          {"low", known ? json(ratio->low) : json()},
+          {"high", known ? json(ratio->high) : json()}};
+}
+
+static json name_of(const Entry* entry) { return entry ? json(entry->row) : json(); }
+
+// The library finds these by the type of what is put into a document, or a list of it.
+
+static void to_json(json& to, const Entry& entry) {
+  to = {{"contestant", entry.role.name},
+        {"row", entry.row},
+        {"unranked", entry.role.unranked},
+        {"counts", entry.counts},
+        {"id", entry.point.id()},
+        {"seconds", number(entry.point.seconds())},
+        {"step", number(entry.point.step())},
+        {"error", number(entry.error)},
+        {"delivered_strain", number(entry.point.delivered_strain())}};
+}
+
+static void to_json(json& to, const Cell& cell) {
+  to = {{"strain_limit", cell.strain_limit},
+        {"error_level", number(cell.level)},  // null: any motion
+        {"known_until", cell.known_until},
+        {"empty_because", cell.empty_because},
+        {"first", name_of(cell.first())},
+        {"clear", cell.clear()},
+        {"entries", cell.entries}};
+  for (std::size_t i = 0; i < rival_infos.size(); ++i) {
+    const Entry* rival = cell.rival(static_cast<Rival>(i));
+    to[rival_infos[i].name] = name_of(rival);
+    to[rival_infos[i].lead] = ratio_json(cell.lead_over(rival));
+  }
+}
+
+// Rows that figures show first: methods that are first in a cell, then the paper's six.
+static std::vector<std::string> leaders_of(const Plane& plane) {
+  std::vector<std::string> rows;
+  for (const Cell& cell : plane.cells)
+    if (cell.first()) rows.push_back(cell.first()->row);
+  for (const PaperMethod& method : all_paper_methods) rows.emplace_back(method.name);
+  return in_order(rows, std::identity());
+}
+
+static void to_json(json& to, const Plane& plane) {
+  to = {{"scene", plane.scene},
+        {"sweep", plane.sweep},
+        {"scene_parameters", plane.scene_parameters},
+        {"resolution", plane.resolution},
+        {"vertices", plane.vertices},
+        {"strain_limits", plane.limits},
+        {"error_levels", plane.levels},  // any motion, which is infinite, is written as null
+        {"leaders", leaders_of(plane)},
+        {"cells", plane.cells}};
+}
+
+namespace {
+
+// The least sample, and the median of three or more: between them lies what disturbed the runs.
+// Null: not timed.
+json time_json(const std::vector<double>& samples) {
+  const double least = time_of(samples);
+  if (!(least > 0)) return nullptr;
+  return {least, samples.size() < 3 ? least : quantile(samples, 0.5)};
+}
+
+json best_json(double x, const Point& point) {
+  const PointResult& p = point.result();
+  return {{"x", x},
+          {"time", time_json(p.samples)},
+          {"filter", time_json(p.filter_samples)},
+          {"step", number(p.spec.step)},
+          {"ladder_end", p.at_ladder_end}};
+}
+
+// Why none of a contestant's runs counts: the letters of their statuses, from the coarsest step to
+// the finest. "": one does count, perhaps at a tighter limit. runs: of one plane, coarsest first.
+std::string failure_letters(const std::vector<Point>& runs, double limit, double level) {
+  std::string found;
+  for (const Point& run : runs) {
+    const double kept = run.spec().strain_limit;
+    if (kept > limit) continue;
+    if (run.ok() && !(run.measures().trajectory > level)) return "";
+    const std::string letter =
+        run.ok() ? "X" : point_statuses[static_cast<std::size_t>(run.result().status)].letter;
+    if (kept == limit && found.find(letter) == found.npos) found += letter;
+  }
+  return found;
+}
+
+// A figure for each scene and sweep, and for what the sweep leaves fixed: vertices, or the limit.
+json curves_of(const ContestantRoles& roles, const std::vector<Plane>& planes) {
+  std::map<std::tuple<std::string, std::string, double>, json> figures;
+  for (const Plane& plane : planes) {
+    const bool sizes = plane.sweep == "resolution";
+    if (!sizes && plane.sweep != "strain") continue;
+    std::vector<Point> points = plane.points;
+    std::erase_if(points, [&](const Point& p) { return roles.of(p.contestant()).again; });
+    std::ranges::stable_sort(points, std::greater(), &Point::step);
+    const auto own_runs = grouped(points, &Point::contestant);
+    for (const double limit : plane.limits) {
+      const double fixed = sizes ? limit : plane.vertices, x = sizes ? plane.vertices : limit;
+      json& figure = figures[{plane.scene, plane.sweep, fixed}];
+      for (const auto& [panel, level] :
+           {std::pair("any", any_motion), {"within", headline_error}}) {
+        json& curves = figure[panel];
+        for (const Entry& entry : plane.cell(limit, level).entries)
+          if (!entry.role.again)
+            curves[entry.role.name]["best"].push_back(best_json(x, entry.point));
+        for (const auto& [name, own] : own_runs) {
+          const std::string why = failure_letters(own, limit, level);
+          if (!why.empty()) curves[name]["failures"].push_back({x, why});
+        }
+      }
+    }
+  }
+  json list = json::array();
+  for (auto& [place, figure] : figures) {
+    std::tie(figure["scene"], figure["sweep"], figure["fixed"]) = place;
+    list.push_back(std::move(figure));
+  }
+  return list;
+}
+
+}  // namespace
+
+json analysis_of(const Runs& runs) {
+  const std::vector<Plane> planes = planes_of(runs);
+  return {{"schema", "inextensible-analysis/1"},
+          {"headline_error", headline_error},
+          {"findings", findings_of(planes)},
+          {"planes", planes},
+          {"curves", curves_of(runs.roles, planes)}};
 }
 
 }  // namespace harness::analysis

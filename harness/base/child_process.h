@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "harness/base/interrupt.h"
+#include "harness/base/clock.h"
 #include "harness/base/json.h"
 
 namespace harness {

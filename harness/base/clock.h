@@ -1,8 +1,10 @@
-// The clock that everything here is timed with.
+// What long runs look at: the clock that everything here is timed with, and Ctrl-C as a flag.
 #pragma once
 
 #include <chrono>
+#include <csignal>
 #include <ctime>
+#include <exception>
 #include <optional>
 
 namespace harness {
@@ -27,5 +29,16 @@ inline double thread_seconds() {
   };
   return seconds_of(CLOCK_THREAD_CPUTIME_ID) + (helper_clock ? seconds_of(*helper_clock) : 0);
 }
+
+inline volatile std::sig_atomic_t interrupt_requested = 0;
+
+// From here on SIGINT, SIGTERM and SIGHUP set a flag.
+inline void catch_interrupts() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+    std::signal(signal, [](int) { interrupt_requested = 1; });
+}
+inline bool interrupted() { return interrupt_requested != 0; }
+
+class Interrupted : public std::exception {};
 
 }  // namespace harness

@@ -7,8 +7,8 @@
 #include <iostream>
 #include <thread>
 
+#include "harness/base/clock.h"
 #include "harness/base/errors.h"
-#include "harness/base/interrupt.h"
 
 namespace harness {
 namespace {

@@ -6,8 +6,8 @@
 #include <set>
 #include <thread>
 
+#include "harness/base/clock.h"
 #include "harness/base/files.h"
-#include "harness/base/interrupt.h"
 #include "harness/film/film.h"
 #include "harness/judge/mechanics.h"
 

@@ -2,7 +2,6 @@
 #include "harness/base/text.h"
 #include "harness/film/film.h"
 #include "harness/judge/drive.h"
-#include "harness/judge/energy.h"
 #include "harness/judge/mechanics.h"
 #include "harness/run/measure_point.h"
 

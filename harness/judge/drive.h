@@ -4,7 +4,6 @@
 #include <concepts>
 
 #include "harness/base/clock.h"
-#include "harness/base/interrupt.h"
 #include "harness/points/point.h"
 #include "solvers/stepping/step_controller.h"
 #include "solvers/systems/constrained_acceleration.h"

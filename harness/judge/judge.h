@@ -2,7 +2,7 @@
 #pragma once
 
 #include "harness/judge/crossings.h"
-#include "harness/judge/energy.h"
+#include "harness/judge/mechanics.h"
 #include "harness/judge/reference.h"
 #include "solvers/problem/edge_constraints.h"
 

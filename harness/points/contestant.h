@@ -3,7 +3,7 @@
 #pragma once
 
 #include "harness/base/errors.h"
-#include "harness/base/pattern.h"
+#include "harness/base/text.h"
 #include "harness/points/point_json.h"
 
 namespace harness {

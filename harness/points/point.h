@@ -131,7 +131,6 @@ struct PointResult : Samples, RunOutcome {
   }
 
   PointSpec spec;
-  double calibration_seconds = 0;
   int calibration_runs = 0;
   double calibration_guess = unknown;  // N, where the search began; unknown: at an estimate
   std::optional<double> stiffness;     // EA, N, found by calibration

@@ -123,8 +123,6 @@ inline constexpr std::tuple result_fields{
     field("status", &PointResult::status, "", "how the run ended, see `bench list statuses`"),
     field("status_detail", &PointResult::detail, "", "of a failure: step, time, reason"),
     field("setup_seconds", &PointResult::setup_seconds, "s", "wall time before the first step"),
-    field("calibration_seconds", &PointResult::calibration_seconds, "s",
-          "wall time of the search for a stiffness"),
     field("calibration_runs", &PointResult::calibration_runs, "runs",
           "of the search for a stiffness", {.inside = "work"}),
     field("calibration_guess", &PointResult::calibration_guess, "N",

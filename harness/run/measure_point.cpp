@@ -108,7 +108,6 @@ bool needs_stiffness(const PointRunner& runner) {
 bool calibrate(PointResult& point, const PointRunner& runner, Settings& settings,
                std::optional<double> guess) {
   const PointSpec& spec = point.spec;
-  const auto begin = Clock::now();
   point.calibration_guess = guess.value_or(unknown);
   const Calibration found = calibrate_stiffness(
       spec.strain_limit, guess.value_or(first_stiffness(runner.scene(), spec.strain_limit)),
@@ -118,7 +117,6 @@ bool calibrate(PointResult& point, const PointRunner& runner, Settings& settings
                                    RunPart::calibration);
         return {run.status, run.measures.max_strain, run.seconds, run.detail};
       });
-  point.calibration_seconds = since(begin);
   point.calibration_runs = found.runs;
   point.stiffness = found.stiffness;
   if (point.stiffness)

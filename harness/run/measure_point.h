@@ -1,7 +1,7 @@
 // Runs one point: makes scene and solver, finds the stiffness of springs, steps, judges.
 #pragma once
 
-#include "harness/base/interrupt.h"
+#include "harness/base/clock.h"
 #include "harness/judge/reference.h"
 #include "harness/points/point.h"
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "harness/judge/drive.h"
-#include "harness/judge/energy.h"
 #include "harness/judge/mechanics.h"
 
 namespace harness {

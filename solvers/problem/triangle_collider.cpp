@@ -131,8 +131,10 @@ void TriangleCollider::find(const Eigen::Matrix3Xd& x, const std::vector<double>
   std::ranges::sort(planes, {}, [&](const ContactPlane& plane) {
     return std::pair(plane.vertex, plane.normal.dot(x.col(plane.vertex)) - plane.offset);
   });
-  const auto rest = std::ranges::unique(planes, {}, &ContactPlane::vertex);
-  planes.erase(rest.begin(), rest.end());
+  const auto same = [](const ContactPlane& a, const ContactPlane& b) {
+    return a.vertex == b.vertex;
+  };
+  planes.erase(std::unique(planes.begin(), planes.end(), same), planes.end());
 }
 
 bool TriangleCollider::plane_at(const Vector3d& p, ContactPlane& plane, WorkCounters& work) const {

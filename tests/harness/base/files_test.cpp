@@ -1,4 +1,5 @@
-// Where output goes, and what stays unchanged: links, devices, pipes, the user's own files.
+// Where output goes, and what stays unchanged: links, devices, pipes, the user's own files. Input:
+// no text makes a document unreadable, and no expression runs for ever.
 #include "harness/base/files.h"
 
 #include <gtest/gtest.h>
@@ -8,6 +9,9 @@
 #include <thread>
 
 #include "harness/base/errors.h"
+#include "harness/base/json.h"
+#include "harness/base/text.h"
+#include "support/refusal.h"
 
 namespace harness {
 namespace {
@@ -91,6 +95,29 @@ TEST_F(Files, TwoWritersDoNotMix) {
     EXPECT_TRUE(text == a || text == b);
   }
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), fs::directory_iterator()), 1);
+}
+
+TEST(JsonText, InvalidUtf8LosesNoDocument) {
+  const json value = {{"path", "a\xffz"}};
+  EXPECT_EQ(parse_document(document_text(value), "a.json").at("path"), "a\uFFFDz");
+}
+
+TEST(Pattern, MatchesWholeNamesAndFindsParts) {
+  const Pattern pattern("--solver", "shake|icd");
+  EXPECT_TRUE(pattern.matches("ICD"));
+  EXPECT_FALSE(pattern.matches("icd_loose"));
+  EXPECT_TRUE(pattern.found_in("chain/icd/n:20"));
+}
+
+// With backtracking the first would not end within anybody's time.
+TEST(Pattern, PathologicalOnesEndAndHugeOnesAreRefusedInALine) {
+  const Pattern pattern("--filter", "(a*)*(a*)*(a*)*b|(a|aa)+$");
+  EXPECT_FALSE(pattern.found_in(std::string(5000, 'a') + "c"));
+  for (const std::string& bad : {std::string("[z-a]"), std::string(100000, '(')}) {
+    const std::string said = refusal_of([&bad] { const Pattern giant("--filter", bad); });
+    EXPECT_NE(said, "");
+    EXPECT_LT(said.size(), 400u);
+  }
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // Verdicts on the paper's claims follow from points by the stated rules: invented points in, known
 // verdicts out. Those on which method is fast: contests_test.cpp.
 
-#include "support/invented_points.h"
+#include "support/invented_runs.h"
 
 namespace harness {
 namespace {

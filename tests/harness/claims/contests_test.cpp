@@ -1,6 +1,6 @@
 // Claims on which method is fast: verdicts only where intervals lie on one side.
 
-#include "support/invented_points.h"
+#include "support/invented_runs.h"
 
 namespace harness {
 namespace {

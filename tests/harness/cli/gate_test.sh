@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # bench compare, baseline, ab and point: exit codes, bad input, and faults put into a second build of the program that counters
-# must find. What times must find is in plugin_test.sh and pairs_test.cpp, how single points are judged in comparison_test.cpp.
+# must find. What times must find is in plugin_test.sh and comparison_test.cpp, as is how single points are judged.
 . "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/functions.sh"
 
 # edit FROM TO PYTHON: a file with the document `d` changed.

@@ -21,7 +21,7 @@ import json, sys
 def points(path):
     document = json.load(open(path))
     assert document["complete"], path
-    times = {"seconds_per_simulated_second", "filter_seconds_per_simulated_second", "setup_seconds", "calibration_seconds", "phases",
+    times = {"seconds_per_simulated_second", "filter_seconds_per_simulated_second", "setup_seconds", "phases",
              "peak_rss_bytes", "frame_times", "cpu_seconds_per_simulated_second", "runs_per_sample", "retaken",
              "best", "best_at_errors", "at_ladder_end"}
     return [{key: value for key, value in point.items() if key not in times} for point in document["points"]]
@@ -60,7 +60,7 @@ bench "${sweep[@]}" --out whole.json >/dev/null 2>&1 || fail "undisturbed run: e
 whole=$(python3 -c 'import json; p = json.load(open("whole.json"))["points"]
 print(1 + len(p) + sum(len((q["seconds_per_simulated_second"] or {"samples": [0]})["samples"]) - 1 for q in p))')
 
-# ---- kill -9 (at any moment: journal_test.cpp), and Ctrl-C, which leaves a part of the result ----
+# ---- kill -9 (at any moment: execute_test.cpp), and Ctrl-C, which leaves a part of the result ----
 hold killed.json 20
 let_go KILL
 [[ ! -e killed.json ]] || fail "a result before the end"

@@ -4,7 +4,6 @@
 #include "harness/judge/mechanics.h"
 #include "solvers/problem/edge_constraints.h"
 #include "solvers/registry.h"
-#include "support/contact.h"
 #include "support/motion.h"
 
 namespace inextensible {

@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "solvers/problem/triangle_collider.h"
-#include "support/contact.h"
 #include "support/motion.h"
 #include "support/param_name.h"
 

@@ -1,8 +1,7 @@
 // Contact and friction of single vertices against their definitions.
 #include "solvers/problem/contacts.h"
 
-#include "support/contact.h"
-#include "support/random_mesh.h"
+#include "support/motion.h"
 
 namespace inextensible {
 namespace {

@@ -4,8 +4,7 @@
 
 #include <Eigen/Geometry>
 
-#include "support/contact.h"
-#include "support/random_mesh.h"
+#include "support/motion.h"
 
 namespace inextensible {
 namespace {

@@ -145,7 +145,8 @@ double after_a_step(const char* solver, double stiffness, double speed, const Se
   return state.x(0, 1) - 1;
 }
 
-// Backward Euler's step, to the digits of a factor in single precision; the midpoint rule leaves -rho of a fast vibration.
+// Backward Euler's step, to the digits of a factor in single precision; the midpoint rule leaves
+// -rho of a fast vibration.
 TEST(ImplicitForces, DampASpringAsTheirStepperDoes) {
   const double h = 0.05, flight = 0.1 + h * 0.3;
   EXPECT_NEAR(after_a_step("fast_projection", 2000, 0.3, {}), flight / (1 + h * h * 2000 / 0.5),

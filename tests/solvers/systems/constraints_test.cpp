@@ -8,7 +8,6 @@
 #include "solvers/linear/spd_solver.h"
 #include "solvers/systems/constrained_acceleration.h"
 #include "solvers/systems/schur_complement.h"
-#include "support/contact.h"
 #include "support/motion.h"
 
 namespace inextensible {
