@@ -1,5 +1,6 @@
 """Words that fit: texts from result files made harmless, measured, cut and wrapped to a width."""
 
+import re
 from functools import lru_cache
 from typing import Any, Callable
 
@@ -28,6 +29,16 @@ def plain(value: Any) -> str:
     return clean(f"{value:g}" if isinstance(value, float) else value)
 
 
+def spoken(label: str) -> str:
+    """A solver's label as people say it: of "a, b in c", "b a in c"; so commas are between labels only."""
+    return re.sub(r"^([^,(]+), (\w+),?( in .*)?$", r"\2 \1\3", label)
+
+
+def short(label: str) -> str:
+    """Without what stands in parentheses."""
+    return re.sub(r" \([^)]*\)", "", label)
+
+
 def percent(fraction: float) -> str:
     return f"{100 * fraction:.4g} %"
 
@@ -43,7 +54,7 @@ def scene_words(scene: str) -> str:
 
 def subject(scene: str, vertices: int | None = None) -> str:
     """A scene in a title."""
-    name = "drape over a sphere" if scene == "drape" else scene_words(scene)
+    name = "drape over a sphere" if scene == "drape" else scene_words(scene).replace("_", " ")
     return name if vertices is None else f"{name}, {vertices:,} vertices"
 
 
