@@ -39,7 +39,7 @@ def draw(sweep: StepSweep, result: Result, complete: bool = False) -> Figure:
                        f"No run with an error of at most {percent(level)}: {missed}." if missed else
                        f"Each of these methods has a run with an error of at most {percent(level)}.")
     axes = sheet.axes(NARROW, sheet.bottom, WIDTH, HEIGHT)
-    shown = front + [run for solver in styles for run in sweep.runs.get(solver, [])]
+    shown = front + [run for solver in styles for run in sweep.runs.get(solver, []) if complete or run in cheapest(sweep.runs[solver])]
     log_log(axes, [run.error for run in shown], [run.seconds for run in shown])
     axes.set(xlabel="trajectory error over the scene's size", ylabel=TIME_LABEL)
     axes.plot(*_xy(front), color=FRONT, linewidth=7, solid_capstyle="round", solid_joinstyle="round", zorder=1.5)
