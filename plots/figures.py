@@ -29,7 +29,10 @@ from parts.result import Result
 from parts.style import RC
 
 # Which figures there are, in the order that they are drawn in: the files of drawings/ (see there).
-FIGURES = [import_module(f"drawings.{name}") for name in ("cost", "plane", "work_precision", "residual", "hard_cases", "known_answers")]
+FIGURES = [import_module(f"drawings.{name}") for name in (
+    "cost", "plane", "work_precision", "residual", "hard_cases",
+    "known_answers",
+)]
 
 
 def all_figures(result: Result, every: bool = False) -> dict[str, Callable[[], Figure]]:
