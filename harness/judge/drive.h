@@ -65,7 +65,9 @@ DriveState drive(Stepper& stepper, State& state, const Pace& pace, O& observer,
   std::optional<StepController> controller;
   if (pace.halvings > 0)
     controller.emplace(
-        stepper, StepController::Settings{.largest = pace.step, .most_halvings = pace.halvings});
+        stepper, StepController::Settings{.largest = pace.step,
+                                          .most_halvings = pace.halvings,
+                                          .energy_bound = std::numeric_limits<double>::infinity()});
   DriveState driven{.last = pace.step, .smallest = pace.step, .next = pace.step};
   while (driven.steps < pace.steps) {
     const int block = observer.before(state, driven);

@@ -46,37 +46,21 @@ const Vector3d& corner(const TriangleMesh& mesh, int triangle, int i) {
 }  // namespace
 
 TriangleSides sides_of(const std::vector<std::array<int, 3>>& triangles) {
-  const auto sides = 3 * static_cast<int>(triangles.size());
-  const auto ends = [&](int side) -> std::pair<int, int> {
-    const auto& triangle = triangles[side / 3];
-    return std::minmax(triangle[side % 3], triangle[(side + 1) % 3]);
-  };
-  std::vector<std::size_t> begin(1, 0);  // of the sides from each vertex to a higher one
-  for (int side = 0; side < sides; ++side) {
-    const auto place = static_cast<std::size_t>(ends(side).first) + 1;
-    if (place >= begin.size()) begin.resize(place + 1, 0);
-    ++begin[place];
-  }
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  std::vector<std::pair<int, int>> at(sides);  // higher end, side
-  for (int side = sides; side-- > 0;) at[--begin[ends(side).first + 1]] = {ends(side).second, side};
-  TriangleSides found{std::vector<int>(sides), 0, 0, 2};
-  for (std::size_t low = 1; low < begin.size(); ++low) {
-    const auto first = at.begin() + static_cast<std::ptrdiff_t>(begin[low]),
-               last = low + 1 < begin.size()
-                          ? at.begin() + static_cast<std::ptrdiff_t>(begin[low + 1])
-                          : at.end();
-    std::sort(first, last);
-    for (auto one = first; one != last;) {
-      const auto end =
-          std::find_if(one, last, [&](const auto& s) { return s.first != one->first; });
-      if (end - one != 2 && found.faces == 2)
-        found = {std::move(found.twin), static_cast<int>(low) - 1, one->first,
-                 static_cast<int>(end - one)};
-      for (auto s = one; s != end; ++s)
-        found.twin[s->second] = (s + 1 == end ? one : s + 1)->second;
-      one = end;
+  std::vector<std::array<int, 3>> at;  // lower end, higher end, side
+  for (const auto& t : triangles)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [low, high] = std::minmax(t[i], t[(i + 1) % 3]);
+      at.push_back({low, high, static_cast<int>(at.size())});
     }
+  std::ranges::sort(at);
+  TriangleSides found{std::vector<int>(at.size()), 0, 0, 2};
+  for (std::size_t first = 0, end = 0; first < at.size(); first = end) {
+    const auto [low, high, unused] = at[first];
+    while (end < at.size() && at[end][0] == low && at[end][1] == high) ++end;
+    for (std::size_t k = first; k < end; ++k)
+      found.twin[at[k][2]] = at[k + 1 < end ? k + 1 : first][2];
+    if (end - first != 2 && found.faces == 2)
+      found = {std::move(found.twin), low, high, static_cast<int>(end - first)};
   }
   return found;
 }

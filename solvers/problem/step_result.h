@@ -8,9 +8,11 @@ enum class Status {
   not_converged,  // iteration limit, or no further progress
   singular,       // a linear system could not be solved
   not_finite,     // a number overflowed
+  gained_energy,  // steps lift or speed up what nothing drives (StepController)
 };
 inline const char* to_string(Status status) {
-  constexpr const char* names[] = {"ok", "not_converged", "singular", "not_finite"};
+  constexpr const char* names[] = {"ok", "not_converged", "singular", "not_finite",
+                                   "gained_energy"};
   return names[static_cast<int>(status)];
 }
 
