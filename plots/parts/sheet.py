@@ -58,7 +58,7 @@ def make_sheet(result: Result, title: str, paragraphs: list[str], width: float, 
             figure.text(MARGIN / width, (top - line_height * number) / height, text, va="top", **look)
 
     below = height - 0.16 - 0.2 * len(titles)
-    write(titles, height - 0.12, 0.2, fontsize=TITLE_SIZE, fontweight="bold")
+    write(["\n".join(titles)], height - 0.12, 0.2, fontsize=TITLE_SIZE, fontweight="bold", linespacing=1.25)
     write(found, below, FINDING_HEIGHT, fontsize=FINDING_SIZE)
     write(warnings, below - FINDING_HEIGHT * len(found), 0.2, fontsize=WARNING_SIZE, fontweight="bold", color=ALARM)
     write(lines, 0.1 + LINE_HEIGHT * len(lines), LINE_HEIGHT, fontsize=CAPTION_SIZE)
