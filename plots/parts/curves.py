@@ -1,6 +1,5 @@
 """Curves of time, the names at their ends, the steps beneath them, and the strip of failures above them."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np

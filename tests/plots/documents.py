@@ -179,7 +179,7 @@ def legend_labels(figure: Figure) -> list[str]:
 
 def words(figure: Figure) -> str:
     """Those around the panels."""
-    return " ".join(text.get_text() for text in figure.texts)
+    return " ".join(" ".join(text.get_text() for text in figure.texts).split())
 
 
 def strips(figure: Figure) -> list[Axes]:
