@@ -30,19 +30,15 @@ from parts.style import RC
 
 # Which figures there are, in the order that they are drawn in: the files of drawings/ (see there).
 FIGURES = [import_module(f"drawings.{name}") for name in (
-    "cost",            # Figures 4 and 5 of the paper, and growth
-    "plane",           # who is fastest within a strain limit and an error
-    "work_precision",
-    "residual",        # Figure 3
-    "hard_cases",      # of a stability sweep
+    "cost", "plane", "work_precision", "residual", "hard_cases",
     "known_answers",
 )]
 
 
-def all_figures(result: Result) -> dict[str, Callable[[], Figure]]:
-    """Names of the figures that the result has runs for, and what draws them."""
+def all_figures(result: Result, every: bool = False) -> dict[str, Callable[[], Figure]]:
+    """Names of the figures that the result has runs for, and what draws them; every: also complete ones, of all solvers."""
     figures: dict[str, Callable[[], Figure]] = {}
-    for name, draw, *of in (figure for drawing in FIGURES for figure in drawing.figures_of(result)):
+    for name, draw, *of in (figure for drawing in FIGURES for figure in drawing.figures_of(result, every)):
         unique, number = name, 2
         while unique in figures:  # names that differ only in what no file name can hold
             unique, number = f"{name}-{number}", number + 1
@@ -54,8 +50,9 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="figures.py", description="Draws the figures of a result file.")
     parser.add_argument("result", type=Path, help="result file of the bench program, checked and analysed (JSON)")
     parser.add_argument("--out", type=Path, required=True, help="folder for the figures")
+    parser.add_argument("--all", action="store_true", help="also the complete figures, of all solvers")
     options = parser.parse_args()
-    figures = all_figures(Result(json.loads(options.result.read_text(encoding="utf-8"))))
+    figures = all_figures(Result(json.loads(options.result.read_text(encoding="utf-8"))), options.all)
     if not figures:
         print(f"figures.py: {options.result.name}: no points to draw", file=sys.stderr)
         return 2

@@ -129,7 +129,7 @@ def page(results: dict[Path, Result], found: list[Json], claims: list[Json]) -> 
     data = embedded(results)
     with matplotlib.rc_context(RC):
         pictures = "".join(picture(f"{path.stem}-{name}", draw) for path, result in results.items()
-                           for name, draw in all_figures(result).items())
+                           for name, draw in all_figures(result, every=True).items())
     machines = [[path.name, *(str(result.context[key]) for key in ("date", "cpu_model", "num_cpus")),
                  build["git"][:12] + (" with changes" if build["dirty"] else ""), build["compiler"], build["flags"]]
                 for path, result in results.items() if (build := result.context["build"])]

@@ -263,6 +263,7 @@ std::string text_of_result(const json& document, const std::string& name, bool a
 json with_analysis(json document);
 
 // Figures of a result, whose names begin with `name`. folder: "" is the current one.
-int draw_figures(json document, const std::string& name, const std::string& folder);
+int draw_figures(json document, const std::string& name, const std::string& folder,
+                 bool all = false);
 
 }  // namespace harness

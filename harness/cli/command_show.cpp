@@ -203,18 +203,20 @@ struct Report : PageOptions {
 struct Plot {
   Words files;
   std::string out, name;
+  bool all = false;
 
   void declare(const Command& command) {
     add_results(command, files, "result file; several: pieces of one sweep, drawn as one");
     command.option("--out", out, "folder for the figures; default: beside the result", "DIR");
     command.option("--name", name,
                    "what the pictures' names begin with; default: the result's name", "NAME");
+    command.flag("--all", all, "also the complete figures: every solver, its steps and failures");
   }
 
   int run() {
     const std::filesystem::path first(files.front());
     return draw_figures(read_as_one(files), name.empty() ? first.stem().string() : name,
-                        out.empty() ? first.parent_path().string() : out);
+                        out.empty() ? first.parent_path().string() : out, all);
   }
 };
 

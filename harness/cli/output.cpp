@@ -238,10 +238,12 @@ json with_analysis(json document) {
   return document;
 }
 
-int draw_figures(json document, const std::string& name, const std::string& folder) {
+int draw_figures(json document, const std::string& name, const std::string& folder, bool all) {
   const TemporaryFolder scratch("figures");
   write_atomically(scratch.file(name + ".json"), with_analysis(std::move(document)).dump());
-  return draw("figures.py", {scratch.file(name + ".json")}, (fs::path(folder) / "").string());
+  Words arguments{scratch.file(name + ".json")};
+  if (all) arguments.emplace_back("--all");
+  return draw("figures.py", arguments, (fs::path(folder) / "").string());
 }
 
 }  // namespace harness

@@ -1,29 +1,31 @@
 """What a simulated second costs over the strain limit or the resolution (the paper's Figures 4 and 5), of any motion and, where errors
-are known, beside it of motion that is right; beneath it the best steps and, where a collider takes part, the filter's own time. The
-paper's axes are linear; with methods that differ a hundredfold such axes show the slowest alone."""
+are known, beside it of motion that is right: of a few methods, whose names stand at their curves. The complete figure has all, and
+beneath it the best steps and, where a collider takes part, the filter's own time. The paper's axes are linear; with methods that
+differ a hundredfold such axes show the slowest alone."""
 
-from dataclasses import dataclass
+import math
+from typing import NamedTuple
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from parts.axes import draw_slopes, grid, log_x, log_y
-from parts.curves import (Curves, Rows, add_strip, all_best, curves_in, draw_curves, draw_noise, draw_steps, ends_of,
-                          failed_rows, letters_in)
+from parts.axes import grid, log_x, log_y
+from parts.curves import Curves, Rows, add_strip, all_best, curves_in, draw_curves, draw_steps, ends_of, failed_rows, label_ends, letters_in
 from parts.result import Figures, Json, Result
-from parts.sheet import (BETWEEN, LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, ROW_HEIGHT, STEPS_HEIGHT, TIME_LABEL, Sheet, add_legend,
-                         legend_height, make_sheet, sampling, scene_sentence, settings_of_the_run)
+from parts.sheet import (BETWEEN, END_WIDTH, LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, NARROW, ROW_HEIGHT, STEPS_HEIGHT, TIME_LABEL,
+                         Sheet, add_legend, legend_height, make_sheet, noise_words, sampling, scene_sentence, settings_of_the_run)
 from parts.style import Styles, receding_sentences, styles_for
-from parts.words import file_part, percent, scene_words, subject
+from parts.words import file_part, percent, scene_words, short, subject
 
 NUMBERS_OF_THE_PAPER = {("chain", "strain"): "4a", ("chain", "resolution"): "4b", ("drape", "strain"): "5a", ("drape", "resolution"): "5b"}
-AXIS_LABELS = {"strain": "strain limit (%)", "resolution": "vertices (dotted: slopes 1 and 2)"}
 HEADING = 0.22  # inches, above two columns
+BESIDE = 2.85  # inches, width of a panel beside another
 
 
-def figures_of(result: Result) -> Figures:
+def figures_of(result: Result, every: bool = False) -> Figures:
     curves = result.analysis.get("curves", [])
-    return [(_name(figure, curves), draw, figure, result) for figure in curves]
+    return [(_name(figure, curves) + ("-all" if complete else ""), draw, figure, result, complete)
+            for figure in curves for complete in (False, True)[:1 + every]]
 
 
 def _name(figure: Json, all_figures: list[Json]) -> str:
@@ -35,116 +37,122 @@ def _name(figure: Json, all_figures: list[Json]) -> str:
     return name
 
 
-@dataclass(frozen=True)
-class Column:
+class Column(NamedTuple):
     curves: Curves
     filter: Curves  # {}: no panel
     rows: Rows
-    left: float
     heading: str
-    strip: str  # the title of its failures
 
 
-def draw(figure: Json, result: Result) -> Figure:
-    scene, sweep, points = figure["scene"], figure["sweep"], _points(figure, result)
-    styles = styles_for(figure["any"], result, result.leaders(scene, sweep))
-    columns = _columns(figure, points, styles, percent(result.analysis["headline_error"]))
-    number = NUMBERS_OF_THE_PAPER.get((scene, sweep))
-    title = f"{subject(scene)}: cost over {'strain limit' if sweep == 'strain' else 'resolution'}"
-    found = result.finding(scene, sweep, figure["fixed"] if sweep == "strain" else None)[:1]
-    return _draw(figure, result, columns, styles, f"Figure {number} - {title}" if number else title, found)
-
-
-def _draw(figure: Json, result: Result, columns: list[Column], styles: Styles, title: str, found: list[str]) -> Figure:
-    strip = ROW_HEIGHT * max(len(column.rows) for column in columns)
-    beneath = (STEPS_HEIGHT + BETWEEN) * (2 if columns[0].filter else 1)
-    sheet = make_sheet(result, title, [*receding_sentences(styles.values()), *_caption(figure, _points(figure, result), result, columns)],
-                       columns[-1].left + MAIN_WIDTH + LEGEND_WIDTH, beneath + MAIN_HEIGHT + strip + (HEADING if len(columns) > 1 else 0),
-                       legend_height(styles) - beneath - MAIN_HEIGHT, " ".join(found))
-    mains = [_draw_column(sheet, column, styles, figure, beneath) for column in columns]
+def draw(figure: Json, result: Result, complete: bool = False) -> Figure:
+    scene, sweep = figure["scene"], figure["sweep"]
+    panels = {panel: {time: curves_in(figure[panel] or {}, result, 100 if sweep == "strain" else 1, time) for time in ("time", "filter")}
+              for panel in ("any", "within")}
+    names = list(panels["any"]["time"])
+    if not complete:
+        names = result.few(names, _headline_times(panels["within"]["time"], sweep) or _headline_times(panels["any"]["time"], sweep))
+    styles = styles_for(names, result, result.leaders(scene, sweep) if complete else None)
+    fixed = "vertices" if sweep == "strain" else "strain_limit"
+    points = [point for point in result.points if (point["scene"], point["sweep"], point[fixed]) == (scene, sweep, figure["fixed"])]
+    columns = _columns(panels, points if complete else [], styles, percent(result.analysis["headline_error"]))
+    strip = ROW_HEIGHT * max(len(column.rows) for column in columns) if complete else 0
+    beneath = (STEPS_HEIGHT + BETWEEN) * (2 if columns[0].filter else 1) if complete else 0
+    left, between, right = (LEFT, LEFT, LEGEND_WIDTH) if complete else (NARROW, END_WIDTH + 0.45, END_WIDTH)
+    width = MAIN_WIDTH if complete or len(columns) == 1 else BESIDE
+    number, vertices = NUMBERS_OF_THE_PAPER.get((scene, sweep)), figure["fixed"] if sweep == "strain" else None
+    caption = _complete_caption(figure, points, result, columns, styles) if complete else [_caption(figure, points, result)]
+    sheet = make_sheet(result, result.headline((f"Figure {number}, " if number else "") + subject(scene), scene, sweep, vertices), caption,
+                       left + len(columns) * width + (len(columns) - 1) * between + right,
+                       beneath + MAIN_HEIGHT + strip + (HEADING if len(columns) > 1 else 0),
+                       legend_height(styles) - beneath - MAIN_HEIGHT if complete else 0, _failures(columns, styles, sweep))
+    mains = [_draw_column(sheet, column, styles, sweep, left + place * (width + between), width, beneath)
+             for place, column in enumerate(columns)]
     low, high = min(main.get_ylim()[0] for main in mains), max(main.get_ylim()[1] for main in mains)
     for column, main in zip(columns, mains):
         main.set_ylim(low, high)  # the same scale, so that both columns compare
-        draw_noise(main, result.noise_factor)
-        if figure["sweep"] == "resolution":
-            draw_slopes(main)
-        add_strip(sheet, main, column.rows, styles, column.strip)
+        if complete:
+            add_strip(sheet, main, column.rows, styles)
+        else:
+            label_ends(main, column.curves, styles)
         box = main.get_position()
         if len(columns) > 1:
-            sheet.figure.text(box.x0, box.y1 + (strip + 0.17) / sheet.height, column.heading, fontsize=9, fontweight="bold",
-                              va="bottom")
+            sheet.figure.text(box.x0, box.y1 + (strip + (0.17 if complete else 0.06)) / sheet.height, column.heading, fontsize=9,
+                              fontweight="bold", va="bottom")
     mains[0].set_ylabel(TIME_LABEL)
-    add_legend(mains[-1], styles, ends_of(columns[-1].curves))
+    if complete:
+        add_legend(mains[-1], styles, ends_of(columns[-1].curves))
     return sheet.figure
 
 
-def _points(figure: Json, result: Result) -> list[Json]:
-    fixed = "vertices" if figure["sweep"] == "strain" else "strain_limit"
-    return [point for point in result.points if (point["scene"], point["sweep"], point[fixed]) ==
-            (figure["scene"], figure["sweep"], figure["fixed"])]
+def _headline_times(curves: Curves, sweep: str) -> dict[str, float]:
+    """Each solver's time at the largest size, or at the limit that is closest to 1 %."""
+    xs = [best.x for best in all_best(curves)]
+    x = max(xs, key=lambda x: x if sweep == "resolution" else -abs(math.log(x)), default=None)
+    return {name: best.seconds for name, curve in curves.items() for best in curve.best if best.x == x}
 
 
-def _columns(figure: Json, points: list[Json], styles: Styles, level: str) -> list[Column]:
-    """Any motion, and motion that is right where it is known of some run."""
+def _columns(panels: dict[str, dict[str, Curves]], points: list[Json], styles: Styles, level: str) -> list[Column]:
+    """Any motion, and motion that is right where it is known of some run; points: those that ask for a panel of the filter's time."""
     collides = any(point["max_strain_after_collision"] is not None for point in points)
     columns = []
-    for panel, left, heading, strip in (
-            ("any", LEFT, "any motion: the paper's question", "failed at every step"),
-            ("within", 2 * LEFT + MAIN_WIDTH, f"error at most {level} of the scene's size", "failed or too wrong at every step")):
-        factor = 100 if figure["sweep"] == "strain" else 1
-        curves, of_filter = (curves_in(figure[panel] or {}, factor, time) for time in ("time", "filter"))
+    for panel, heading in (("any", "Any motion: the paper's question"), ("within", f"Motion error at most {level}")):
+        curves, of_filter = ({name: curve for name, curve in panels[panel][time].items() if name in styles} for time in ("time", "filter"))
         if panel == "any" or all_best(curves):
-            columns.append(Column(curves, of_filter if collides and all_best(of_filter) else {}, failed_rows(curves, styles), left, heading,
-                                  strip))
+            columns.append(Column(curves, of_filter if collides and all_best(of_filter) else {}, failed_rows(curves, styles), heading))
     return columns
 
 
-def _draw_column(sheet: Sheet, column: Column, styles: Styles, figure: Json, beneath: float) -> Axes:
+def _draw_column(sheet: Sheet, column: Column, styles: Styles, sweep: str, left: float, width: float, beneath: float) -> Axes:
     """Returns the main panel, which is alone where nothing is beneath it."""
-    main = sheet.axes(column.left, sheet.bottom + beneath, MAIN_WIDTH, MAIN_HEIGHT)
-    log_x(main, [b.x for b in all_best(column.curves)] + [x for curve in column.curves.values() for x, _ in curve.failures], MAIN_WIDTH)
+    main = sheet.axes(left, sheet.bottom + beneath, width, MAIN_HEIGHT)
+    log_x(main, [b.x for b in all_best(column.curves)] + [x for curve in column.curves.values() for x, _ in curve.failures], width)
     panels = [(main, column.curves)]
     if column.filter:
-        panels.append((sheet.axes(column.left, sheet.bottom + STEPS_HEIGHT + BETWEEN, MAIN_WIDTH, STEPS_HEIGHT, sharex=main), column.filter))
+        panels.append((sheet.axes(left, sheet.bottom + STEPS_HEIGHT + BETWEEN, width, STEPS_HEIGHT, sharex=main), column.filter))
         panels[-1][0].set_ylabel("filter alone (s)")
     for axes, curves in panels:
-        log_y(axes, [time for best in all_best(curves) for time in (best.seconds, best.median)])
-        draw_curves(axes, curves, styles)
+        log_y(axes, [best.seconds for best in all_best(curves)])
+        draw_curves(axes, curves, styles, stairs=sweep == "strain")
         axes.tick_params(axis="x", which="both", labelbottom=not beneath)
         grid(axes)
     lowest = main
     if beneath:
-        lowest = sheet.axes(column.left, sheet.bottom, MAIN_WIDTH, STEPS_HEIGHT, sharex=main)
+        lowest = sheet.axes(left, sheet.bottom, width, STEPS_HEIGHT, sharex=main)
         draw_steps(lowest, column.curves, styles)
         lowest.set_ylabel("best time step (s)")
         grid(lowest)
-    lowest.set_xlabel(AXIS_LABELS[figure["sweep"]])
+    lowest.set_xlabel("strain limit (%)" if sweep == "strain" else "vertices")
     return main
 
 
-def _caption(figure: Json, points: list[Json], result: Result, columns: list[Column]) -> list[str]:
+def _failures(columns: list[Column], styles: Styles, sweep: str) -> str:
+    """One sentence. Who fails at a limit fails at each tighter one, for a run at that would count."""
+    def items(rows: Rows) -> list[str]:
+        return [f"{short(styles[name].label)} ({marks[-1][0]:g} %{' and less' if len(marks) > 1 else ''})" if sweep == "strain" else
+                f"{short(styles[name].label)} ({', '.join(f'{x:,g}' for x, _ in marks)})" for name, marks in rows.items()]
+
+    failed = items(columns[0].rows)
+    wrong = items({name: marks for name, marks in columns[-1].rows.items() if dict(marks).keys() != dict(columns[0].rows.get(name, [])).keys()})
+    if not failed + wrong:
+        return f"Each of these methods has a run that counts at every {'limit' if sweep == 'strain' else 'size'}."
+    return "Missing " + "; ".join(f"{why}: {'; '.join(of)}" for why, of in (
+        ("because every step tried failed", failed), ("on the right for too large an error", wrong)) if of) + "."
+
+
+def _caption(figure: Json, points: list[Json], result: Result) -> str:
+    """The short one, which the complete figure continues."""
+    counts = " A run at a tighter limit also counts at a looser one." if figure["sweep"] == "strain" else ""
     sizes = sorted({point["vertices"] for point in points})
-    size = f"{sizes[0]:,.0f} to {sizes[-1]:,.0f} vertices" if len(sizes) > 1 else f"{sizes[-1]:,.0f} vertices"
-    if figure["sweep"] == "resolution":
-        size += f", strain limit {percent(figure['fixed'])}"
-    steps = "Each solver at its own best time step" + (" (panel of best steps)" if columns[0].heading else "")
-    if len(columns) > 1:
-        steps = ("Each solver at its fastest time step, of any motion on the left, and on the right of those whose error is at most "
-                 f"{percent(result.analysis['headline_error'])} of the scene's size (panels of best steps)")
-    best = [best for column in columns for best in all_best(column.curves)]
-    bars = any(b.median > b.seconds for b in best)
-    method = "; ".join([steps, sampling(result) + (", bars: up to their median" if bars else ""), *filter(None, settings_of_the_run(result))])
-    marks = []
-    if result.noise_factor is not None:
-        marks.append("Bar in the corner: how far apart one solver is from itself under another name (A/A pair, 95 %); "
-                     "points closer than that do not differ.")
-    elif not bars:
-        marks.append("No A/A pair: small differences mean nothing.")
-    if any(result.known(name).contestant and result.known(name).unranked for name in figure["any"]):
-        marks.append("Hollow marks: untuned settings, not ranked.")
-    if any(b.ladder_end for b in best):
-        marks.append("Arrow at a step: it is the coarsest (up) or the finest (down) that was tried, a better one may lie beyond.")
+    size = " to ".join(f"{size:,.0f}" for size in dict.fromkeys((sizes[0], sizes[-1]))) + " vertices"
+    size += f", strain limit {percent(figure['fixed'])}" if figure["sweep"] == "resolution" else ""
+    return f"{size}; {sampling(result)}, each method at its fastest step.{counts}{noise_words(result)}"
+
+
+def _complete_caption(figure: Json, points: list[Json], result: Result, columns: list[Column], styles: Styles) -> list[str]:
+    arrows = any(b.ladder_end for column in columns for b in all_best(column.curves))
     letters = {letter for column in columns for letter in letters_in(column.rows)}
     failures = ("A mark above the axes: no step tried gave a run that counts there, nor at a tighter limit; the letters say why, from the "
                 f"coarsest step to the finest: {result.key(letters)}.")
-    return [scene_sentence(figure["scene"], size, points), " ".join([f"{method}.", *marks]), *([failures] if letters else [])]
+    return [_caption(figure, points, result) + (" Arrow at a step: it is the coarsest (up) or the finest (down) that was tried, a better one may "
+                                                "lie beyond." if arrows else ""), *([failures] if letters else []),
+            *receding_sentences(styles.values()), scene_sentence(figure["scene"], points), "; ".join(settings_of_the_run(result)) + "."]

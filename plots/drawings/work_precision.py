@@ -1,54 +1,55 @@
-"""Time against error: one curve a solver through its cheapest runs at any step and limit, others as dots, the front of all underneath."""
+"""Time against error: one curve a solver through its cheapest runs at any step and limit, the front of all underneath. The complete figure
+has every solver, and its other runs as dots."""
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from parts.axes import grid, log_log
-from parts.curves import Rows, add_strip, draw_noise, letters_in
 from parts.result import Figures, Result
 from parts.runs import Run, StepSweep, cheapest, step_sweeps_in
-from parts.sheet import (LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, ROW_HEIGHT, TIME_LABEL, add_legend, legend_height, make_sheet,
-                         scene_sentence, settings_of_the_run)
-from parts.style import SolverStyle, Styles, line_of, receding_sentences
-from parts.words import plain, scene_words
+from parts.sheet import (LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, NARROW, TIME_LABEL, add_legend, legend_height, make_sheet, noise_words,
+                         sampling, scene_sentence, settings_of_the_run)
+from parts.style import SolverStyle, line_of, receding_sentences, styles_for
+from parts.words import percent, short, subject
 
-TARGETS = (1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1)
-LADDER_ENDED = "L"
 FRONT = "#FFE08A"
 WIDTH, HEIGHT = 1.25 * MAIN_WIDTH, 1.25 * MAIN_HEIGHT
 
 
-def figures_of(result: Result) -> Figures:
-    return [(f"work-precision-{sweep.name}", draw, sweep, result) for sweep in step_sweeps_in(result) if any(sweep.runs.values())]
+def figures_of(result: Result, every: bool = False) -> Figures:
+    return [(f"work-precision-{sweep.name}" + ("-all" if complete else ""), draw, sweep, result, complete)
+            for sweep in step_sweeps_in(result) if any(sweep.runs.values()) for complete in (False, True)[:1 + every]]
 
 
-def draw(sweep: StepSweep, result: Result) -> Figure:
-    styles = sweep.styles(result, result.leaders(sweep.scene, "step"))
-    runs = [run for own in sweep.runs.values() for run in own]
-    rows = _missed_targets(sweep, styles, runs)
-    caption = [scene_sentence(sweep.scene, f"{sweep.vertices:,.0f} vertices", sweep.points) + _validity(sweep),
-               "Every run that kept its strain limit, at any step and limit, with tuned or untuned settings, is a dot. A curve joins the runs "
-               "of a solver that none of its others beats in both time and error; the yellow band is the front of all solvers. Hollow: error "
-               "below three times the reference's own uncertainty.", *receding_sentences(styles.values())]
-    if rows:
-        caption.append("A mark above the axes: no run of the solver reached this error; letters say what became of steps finer than its "
-                       f"best: {result.key(letters_in(rows))}.")
-    timeout, profile, _ = settings_of_the_run(result)
-    caption.append("; ".join(filter(None, [f"Least of {plain(result.suite.get('reps', 1))} samples or more a point", profile, timeout])) + ".")
-    sheet = make_sheet(result, f"{scene_words(sweep.scene)}: time against error", caption, LEFT + WIDTH + LEGEND_WIDTH,
-                       HEIGHT + ROW_HEIGHT * len(rows), legend_height(styles) - HEIGHT,
-                       " ".join(result.finding(sweep.scene, "step", sweep.vertices)[:1]))
-    axes = sheet.axes(LEFT, sheet.bottom, WIDTH, HEIGHT)
-    log_log(axes, [run.error for run in runs], [run.seconds for run in runs])
+def draw(sweep: StepSweep, result: Result, complete: bool = False) -> Figure:
+    level, front = result.analysis["headline_error"], cheapest([run for own in sweep.runs.values() for run in own])
+    right = {solver: min(times) for solver, own in sweep.runs.items() if (times := [run.seconds for run in own if run.error <= level])}
+    styles = styles_for(sweep.runs if complete else result.few(sweep.runs, right), result,
+                        result.leaders(sweep.scene, "step") if complete else None)
+    missed = "; ".join(short(style.label) for solver, style in styles.items() if solver not in right)
+    caption = [f"{sweep.vertices:,.0f} vertices; {sampling(result)}. A curve joins a method's runs, at any step and strain limit, that none of its "
+               "others beats in both time and error. Yellow: the front of all methods. Hollow: error below three times the reference's own "
+               "uncertainty." + noise_words(result)]
+    if complete:
+        caption = [*caption, scene_sentence(sweep.scene, sweep.points) + _validity(sweep),
+                   "; ".join(["Dots: all runs that kept their strain limit, with tuned or untuned settings", *settings_of_the_run(result)]) + ".",
+                   *receding_sentences(styles.values())]
+    sheet = make_sheet(result, result.headline(subject(sweep.scene), sweep.scene, "step", sweep.vertices), caption,
+                       NARROW + WIDTH + LEGEND_WIDTH, HEIGHT, legend_height(styles) - HEIGHT,
+                       f"No run with an error of at most {percent(level)}: {missed}." if missed else
+                       f"Each of these methods has a run with an error of at most {percent(level)}.")
+    axes = sheet.axes(NARROW, sheet.bottom, WIDTH, HEIGHT)
+    shown = front + [run for solver in styles for run in sweep.runs.get(solver, []) if complete or run in cheapest(sweep.runs[solver])]
+    log_log(axes, [run.error for run in shown], [run.seconds for run in shown])
     axes.set(xlabel="trajectory error over the scene's size", ylabel=TIME_LABEL)
-    axes.plot(*_xy(cheapest(runs)), color=FRONT, linewidth=9, alpha=0.8, solid_capstyle="round", solid_joinstyle="round", zorder=2)
+    axes.plot(*_xy(front), color=FRONT, linewidth=7, solid_capstyle="round", solid_joinstyle="round", zorder=1.5)
     for order, (solver, style) in enumerate(styles.items()):
-        _draw_solver(axes, sweep.runs.get(solver, []), style, 10 + len(styles) - order if style.leads else 3)
-    draw_noise(axes, result.noise_factor)
+        own = sweep.runs.get(solver, [])
+        if complete:
+            axes.plot(*_xy(own), linestyle="none", marker=".", markersize=2.5, color=style.color, alpha=0.5, zorder=4)
+        _draw_solver(axes, own, style, 10 + len(styles) - order if style.leads else 3)
     grid(axes)
-    add_strip(sheet, axes, rows, styles, "error not reached")
-    ends = {solver: cheapest(own)[-1] for solver, own in sweep.runs.items() if own}
-    add_legend(axes, styles, {solver: (run.error, run.seconds) for solver, run in ends.items()})
+    add_legend(axes, styles, {solver: (run.error, run.seconds) for solver, own in sweep.runs.items() for run in cheapest(own)[-1:]})
     return sheet.figure
 
 
@@ -57,7 +58,6 @@ def _xy(runs: list[Run]) -> tuple[list[float], list[float]]:
 
 
 def _draw_solver(axes: Axes, runs: list[Run], style: SolverStyle, z: int) -> None:
-    axes.plot(*_xy(runs), linestyle="none", marker=".", markersize=2.5, color=style.color, alpha=0.5, zorder=4)
     curve = cheapest(runs)
     line = line_of(style, *_xy(curve), zorder=z)
     line.set_markevery([number for number, run in enumerate(curve) if run.sure])
@@ -68,23 +68,6 @@ def _draw_solver(axes: Axes, runs: list[Run], style: SolverStyle, z: int) -> Non
 
 
 def _validity(sweep: StepSweep) -> str:
-    errors = [point["error"] for point in sweep.points if point["status"] == "ok"]
-    if sure := [error["error_until"] for error in errors if error.get("error_until")]:
-        return (" Errors over the sample times at which they are more than three times the reference's own uncertainty, up to "
-                f"t = {max(sure):g} s.")
-    known = [error["valid_until"] for error in errors if error.get("valid_until")]
-    return f" Errors up to t = {min(known):g} s, as far as the reference can be trusted." if known else ""
-
-
-def _missed_targets(sweep: StepSweep, styles: Styles, runs: list[Run]) -> Rows:
-    """The error targets that some solver reached and this one did not, with what became of its finer steps."""
-    errors = [run.error for run in runs]
-    rows: Rows = {}
-    for solver in (name for name, style in styles.items() if style.leads):
-        closest = min(sweep.runs.get(solver, []), key=lambda run: run.error, default=None)
-        failed = sorted(sweep.failures.get(solver, []), key=lambda failure: -failure[0])
-        letters = "".join(dict.fromkeys(letter for step, letter in failed if not closest or step < closest.step)) or LADDER_ENDED
-        marks = [(target, letters) for target in TARGETS if min(errors) <= target <= max(errors) and (not closest or target < closest.error)]
-        if marks:
-            rows[solver] = marks
-    return rows
+    known = [until for point in sweep.points if point["status"] == "ok"
+             if (until := point["error"].get("error_until") or point["error"].get("valid_until"))]
+    return f" Errors up to t = {max(known):g} s, as far as the reference can be trusted." if known else ""

@@ -66,21 +66,15 @@ def log_steps_on_y(axes: Axes, steps: list[float]) -> None:
     _log(axes.yaxis, steps, room, FixedLocator([COARSEST_STEP / 2.0**k for k in rungs[::math.ceil(len(rungs) / 8)]]), NullLocator(), step_name)
 
 
-def gap(axes: Axes, left: float, right: float) -> float:
-    """Distance of two x values, in points."""
-    (start, _), (end, _) = axes.transData.transform([(left, 1), (right, 1)])
-    return (end - start) * 72 / axes.get_figure().dpi
-
-
 def grid(axes: Axes) -> None:
     axes.grid(which="major", color="#DDDDDD", linewidth=0.5)
     axes.set_axisbelow(True)
     axes.spines["top"].set_visible(False)
 
 
-def draw_slopes(axes: Axes, from_right: bool = False) -> None:
-    """Faint lines of slope 1 and 2 through the lower left corner, or through the upper right one, to read the curves' slopes against."""
-    ends, corner = axes.get_xlim(), int(from_right)
-    for power in (1, 2):  # clipped at the axes
-        line = [axes.get_ylim()[corner] * (x / ends[corner]) ** power for x in ends]
-        axes.plot(ends, line, color=GREY, linewidth=0.6, linestyle=(0, (1, 3)), zorder=1)
+def draw_slopes(axes: Axes) -> None:
+    """Faint lines of slope 1 and 2 through the upper right corner, to read the curves' slopes against; clipped at the axes."""
+    low, high = axes.get_xlim()
+    for power in (1, 2):
+        axes.plot((low, high), [axes.get_ylim()[1] * (x / high) ** power for x in (low, high)], color=GREY, linewidth=0.6,
+                  linestyle=(0, (1, 3)), zorder=1)

@@ -1,18 +1,19 @@
-"""Curves of time, the steps beneath them, and the strip of failures above them."""
+"""Curves of time, the names at their ends, the steps beneath them, and the strip of failures above them."""
 
-import math
 from dataclasses import dataclass
 
+import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
 from matplotlib.text import Annotation
 from matplotlib.ticker import NullLocator
 from matplotlib.transforms import ScaledTranslation
 
-from parts.axes import gap, log_steps_on_y, set_ticks
-from parts.result import Json
-from parts.sheet import LEFT, ROW_HEIGHT, Sheet
+from parts.axes import log_steps_on_y, set_ticks
+from parts.result import Json, Result
+from parts.sheet import END_WIDTH, LEFT, LEGEND_SIZE, ROW_HEIGHT, Sheet
 from parts.style import DARK_GREY, LIGHT_GREY, Styles, line_of
-from parts.words import clean, shorten
+from parts.words import short, shorten, wrap
 
 NAME_SIZE = 6.5
 Rows = dict[str, list[tuple[float, str]]]  # of a strip: x and letters, by solver
@@ -20,11 +21,10 @@ Rows = dict[str, list[tuple[float, str]]]  # of a strip: x and letters, by solve
 
 @dataclass(frozen=True)
 class Best:
-    """The fastest run of one solver at one x: its least sample, and the median of three or more."""
+    """The fastest run of one solver at one x."""
 
     x: float
     seconds: float
-    median: float
     step: float
     ladder_end: str  # whether the step is the coarsest or the finest of those tried
 
@@ -38,30 +38,33 @@ class Curve:
 Curves = dict[str, Curve]
 
 
-def curves_in(panel: Json, factor: float = 1.0, time: str = "time") -> Curves:
-    """Curves of the program's analysis; factor: of x. time: "filter" for the filter's own."""
-    return {name: Curve(sorted((Best(factor * best["x"], *best[time], best["step"], best["ladder_end"])
-                                for best in curve.get("best", []) if best[time]), key=lambda best: best.x),
-                        sorted((factor * x, letters) for x, letters in curve.get("failures", [])))
-            for name, curve in panel.items()}
+def curves_in(panel: Json, result: Result, factor: float = 1.0, time: str = "time") -> Curves:
+    """Curves of the program's analysis, a solver's the fastest of its tuned and untuned settings; factor: of x. time: "filter" for the
+    filter's own."""
+    best: dict[str, dict[float, Best]] = {}
+    failures: dict[str, dict[float, str]] = {}
+    for name, curve in panel.items():
+        solver = result.at_any_settings(name)
+        own = best.setdefault(solver, {})
+        for run in curve.get("best", []):
+            if run[time] and (run["x"] not in own or run[time][0] < own[run["x"]].seconds):
+                own[run["x"]] = Best(factor * run["x"], run[time][0], run["step"], run["ladder_end"])
+        failures.setdefault(solver, {}).update(curve.get("failures", []))
+    return {name: Curve([own[x] for x in sorted(own)], sorted((factor * x, why) for x, why in failures[name].items() if x not in own))
+            for name, own in best.items()}
 
 
 def all_best(curves: Curves) -> list[Best]:
     return [best for curve in curves.values() for best in curve.best]
 
 
-def draw_curves(axes: Axes, curves: Curves, styles: Styles) -> None:
-    """Time over x with thin bars up to the median of the samples."""
+def draw_curves(axes: Axes, curves: Curves, styles: Styles, stairs: bool) -> None:
+    """Time over x; stairs: a run counts for every larger x."""
     for order, (solver, style) in enumerate(styles.items()):
-        best = curves[solver].best if solver in curves else []
-        if not best:
-            continue
-        x, y = [b.x for b in best], [b.seconds for b in best]
-        z = 10 + len(styles) - order if style.prominent else 2
-        if style.prominent:  # for the others a bar would be heavier than the line
-            axes.errorbar(x, y, yerr=[[0.0] * len(best), [b.median - b.seconds for b in best]], fmt="none", ecolor=style.color,
-                          elinewidth=0.7, capsize=1.8, capthick=0.7, zorder=z)
-        axes.add_line(line_of(style, x, y, zorder=z))
+        if solver in curves and curves[solver].best:
+            line = line_of(style, *zip(*((b.x, b.seconds) for b in curves[solver].best)), zorder=10 + len(styles) - order if style.leads else 2)
+            line.set_drawstyle("steps-post" if stairs else "default")
+            axes.add_line(line)
 
 
 def ends_of(curves: Curves) -> dict[str, tuple[float, float]]:
@@ -69,68 +72,55 @@ def ends_of(curves: Curves) -> dict[str, tuple[float, float]]:
     return {solver: (curve.best[-1].x, curve.best[-1].seconds) for solver, curve in curves.items() if curve.best}
 
 
-def draw_noise(axes: Axes, factor: float | None) -> None:
-    """A bar in the lower right corner, on a log axis: two points that are less than its height apart do not differ."""
-    if factor is None:
-        return
-    low, high = axes.get_ylim()
-    bottom = low * (high / low) ** 0.04
-    across = axes.get_yaxis_transform()  # x over the axes' width, y as it is
-    axes.plot([0.975, 0.975], [bottom, bottom * factor], transform=across, color="black", linewidth=1.2, marker="_", markersize=5,
-              zorder=30, gid="noise")
-    axes.text(0.96, bottom * factor**0.5, "A/A noise", transform=across, ha="right", va="center", fontsize=6.5, zorder=30)
+def label_ends(axes: Axes, curves: Curves, styles: Styles) -> None:
+    """Each curve's name, to the right of the axes at the height of its end, moved apart where ends are close."""
+    width, height = 72 * axes.get_position().size * axes.get_figure().get_size_inches()  # points
+    ends = {name: (x, y, height * axes.transAxes.inverted().transform(axes.transData.transform((x, y)))[1])
+            for name, (x, y) in ends_of(curves).items()}
+    names = sorted(ends, key=lambda name: ends[name][2])
+    lines = [wrap(short(styles[name].label), END_WIDTH - 0.3, LEGEND_SIZE)[:3] for name in names]
+    halves = [0.6 * LEGEND_SIZE * len(text) + 1 for text in lines]
+    places = [ends[name][2] for name in names]
+    for _ in range(500):  # neighbours that overlap push each other apart, the axes' ends hold them
+        for k in range(len(names)):
+            if k and (overlap := places[k - 1] + halves[k - 1] + halves[k] - places[k]) > 0:
+                places[k - 1], places[k] = places[k - 1] - overlap / 2, places[k] + overlap / 2
+            places[k] = min(max(places[k], halves[k]), height - halves[k])
+    for name, text, place in zip(names, lines, places):
+        axes.annotate("\n".join(text), ends[name][:2], (1 + 14 / width, place / height), textcoords="axes fraction", va="center",
+                      fontsize=LEGEND_SIZE, color=[0.75 * part for part in to_rgb(styles[name].color)], linespacing=1.0, annotation_clip=False,
+                      arrowprops={"arrowstyle": "-", "color": "#AAAAAA", "linewidth": 0.6, "shrinkA": 0, "shrinkB": 3})
 
 
 # ---- the steps that the fastest runs took -----------------------------------------------------------------------------
 
 def draw_steps(axes: Axes, curves: Curves, styles: Styles) -> None:
-    """Solvers often share a step, so equal ones are fanned out sideways; an arrow marks the coarsest or finest step tried."""
-    shown = {solver: (style, curves[solver].best) for solver, style in styles.items() if style.prominent and not style.hollow}
-    log_steps_on_y(axes, [b.step for _, best in shown.values() for b in best])
-    taken: dict[tuple[float, int], list[str]] = {}
-    for solver, (style, best) in shown.items():
+    """Solvers often share a step, so each is moved sideways a little; an arrow marks the coarsest or finest step tried."""
+    shown = [(style, curves[solver].best) for solver, style in styles.items() if style.leads and solver in curves]
+    log_steps_on_y(axes, [b.step for _, best in shown for b in best])
+    for place, (style, best) in enumerate(shown):
+        moved = axes.transData + ScaledTranslation(3 * (place - len(shown) / 2) / 72, 0, axes.get_figure().dpi_scale_trans)
+        line = line_of(style, [b.x for b in best], [b.step for b in best], zorder=10)
+        line.set(transform=moved, markersize=0.7 * style.look.size, linewidth=0.7)
+        axes.add_artist(line)
         for b in best:
-            taken.setdefault((b.x, _rung(b.step)), []).append(solver)
-        faint = line_of(style, [b.x for b in best], [b.step for b in best], zorder=3)
-        faint.set(marker="", linewidth=0.7, alpha=0.6)
-        axes.add_line(faint)
-    most = max((len(solvers) for solvers in taken.values()), default=1)
-    xs = sorted({b.x for b in all_best(curves)})
-    # as wide as a marker if the nearest x leaves that much room
-    spacing = min([5.5] + [gap(axes, a, b) / (most + 0.5) for a, b in zip(xs, xs[1:])])
-    for solver, (style, best) in shown.items():
-        for b in best:
-            solvers = taken[b.x, _rung(b.step)]
-            shift = (solvers.index(solver) - (len(solvers) - 1) / 2) * spacing
-            moved = axes.transData + ScaledTranslation(shift / 72, 0, axes.get_figure().dpi_scale_trans)
-            marker = line_of(style, [b.x], [b.step], zorder=10)
-            marker.set(linestyle="none", transform=moved, markersize=0.85 * style.look.size)
-            axes.add_artist(marker)
             if b.ladder_end:
-                sign, up, beside = ("\u2191", 1, "bottom") if b.ladder_end == "coarsest" else ("\u2193", -1, "top")
-                axes.add_artist(Annotation(sign, (b.x, b.step), (0, (0.9 * style.look.size + 1.5) * up), xycoords=moved,
-                                           textcoords="offset points", fontsize=8, color=style.color, ha="center", va=beside,
-                                           zorder=12, annotation_clip=False, clip_on=False))
-
-
-def _rung(step: float) -> int:
-    """Steps within a tenth of an octave count as one."""
-    return round(10 * math.log2(step))
+                sign, up, beside = ("\u2191", 4, "bottom") if b.ladder_end == "coarsest" else ("\u2193", -4, "top")
+                axes.add_artist(Annotation(sign, (b.x, b.step), (0, up), xycoords=moved, textcoords="offset points", fontsize=8,
+                                           color=style.color, ha="center", va=beside, zorder=12, annotation_clip=False, clip_on=False))
 
 
 # ---- failures ---------------------------------------------------------------------------------------------------------
 
 def failed_rows(curves: Curves, styles: Styles) -> Rows:
-    """Backends out of competition are not held to the limit."""
-    return {solver: curves[solver].failures for solver, style in styles.items()
-            if style.prominent and solver in curves and curves[solver].failures}
+    return {solver: curves[solver].failures for solver, style in styles.items() if style.leads and solver in curves and curves[solver].failures}
 
 
 def letters_in(rows: Rows) -> set[str]:
     return {letter for marks in rows.values() for _, letters in marks for letter in letters}
 
 
-def add_strip(sheet: Sheet, beneath: Axes, rows: Rows, styles: Styles, title: str) -> None:
+def add_strip(sheet: Sheet, beneath: Axes, rows: Rows, styles: Styles) -> None:
     """On the top edge of `beneath`, with one row a solver, so that failures at one x never hide each other."""
     if not rows:
         return
@@ -140,16 +130,14 @@ def add_strip(sheet: Sheet, beneath: Axes, rows: Rows, styles: Styles, title: st
     axes.spines[["left", "top"]].set_visible(False)
     set_ticks(axes.xaxis, NullLocator(), NullLocator())
     axes.tick_params(axis="y", length=0, labelsize=NAME_SIZE)
-    axes.set_yticks(range(len(rows)), [shorten(clean(name), LEFT - 0.15, NAME_SIZE) for name in rows])
+    axes.set_yticks(range(len(rows)), [shorten(short(styles[name].label), LEFT - 0.15, NAME_SIZE) for name in rows])
     for row, (solver, marks) in enumerate(rows.items()):
-        for (x, letters), after in zip(marks, [*marks[1:], None]):
+        for x, letters in marks:
             sign = line_of(styles[solver], [x], [row], zorder=5)
             sign.set(linestyle="none", clip_on=False)
             axes.add_line(sign)
-            if after and letters == after[1] and gap(axes, x, after[0]) < 7 + 5 * len(letters):
-                continue  # no room, and the next mark says the same
-            # words that would run out of the strip go to the left of their mark
-            turned = gap(axes, x, axes.get_xlim()[1]) < 4 * len(letters)
+            # words that could run out of the strip go to the left of their mark
+            turned = x > np.sqrt(np.prod(axes.get_xlim()))
             axes.annotate(letters, (x, row), (-4.5 if turned else 4.5, -0.3), textcoords="offset points",
                           fontsize=NAME_SIZE, ha="right" if turned else "left", va="center_baseline", annotation_clip=False)
-    axes.set_title(title, loc="right", fontsize=7, pad=2, color=DARK_GREY)
+    axes.set_title("no run that counts", loc="right", fontsize=7, pad=2, color=DARK_GREY)

@@ -3,7 +3,6 @@
 from dataclasses import dataclass, field
 
 from parts.result import Json, Result, seconds_of
-from parts.style import Styles, styles_for
 from parts.words import place_part
 
 Series = list[list[float]]  # rows of time, residual after the first iteration, after the last
@@ -21,18 +20,14 @@ class Run:
 
 @dataclass
 class StepSweep:
-    """All runs of a step sweep on one scene, by solver; failures: step and letter; residuals by strain limit and step."""
+    """All runs of a step sweep on one scene, by solver; residuals by strain limit and step."""
 
     scene: str
     vertices: int
     points: list[Json]
     name: str  # the scene as part of a file's name
     runs: dict[str, list[Run]] = field(default_factory=dict)
-    failures: dict[str, list[tuple[float, str]]] = field(default_factory=dict)
     residuals: dict[str, dict[float, dict[float, Series]]] = field(default_factory=dict)
-
-    def styles(self, result: Result, leaders: set[str] | None = None) -> Styles:
-        return styles_for({*self.runs, *self.failures}, result, leaders)
 
 
 def step_sweeps_in(result: Result) -> list[StepSweep]:
@@ -43,17 +38,15 @@ def step_sweeps_in(result: Result) -> list[StepSweep]:
         if point["sweep"] == "step" and result.known(result.at_any_settings(point["contestant"])).contestant:
             groups.setdefault((point["scene"], point["vertices"]), []).append(point)
     places = [{"scene": scene, "vertices": vertices} for scene, vertices in groups]
-    letters = {status["name"]: status["letter"] for status in result.statuses}
     sweeps = []
     for scene, vertices in sorted(groups):
         sweep = StepSweep(scene, vertices, groups[scene, vertices], place_part({"scene": scene, "vertices": vertices}, places))
         sweeps.append(sweep)
         for point in sweep.points:
             solver, step, error, seconds = result.at_any_settings(point["contestant"]), point["step"], point["error"], seconds_of(point)
-            if point["status"] != "ok" or seconds is None:
-                sweep.failures.setdefault(solver, []).append((step, letters[point["status"]]))
-                continue
             own = sweep.runs.setdefault(solver, [])
+            if point["status"] != "ok" or seconds is None:
+                continue
             if error["trajectory"]:
                 own.append(Run(seconds, step, error["trajectory"], error["trajectory"] >= 3 * (error["gap"] or 0)))
             if error.get("residuals"):

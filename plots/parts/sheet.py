@@ -1,5 +1,6 @@
 """A sheet that panels are placed on by inches, with title, warnings, caption and legend; and the words around a figure."""
 
+import math
 from dataclasses import dataclass
 
 from matplotlib.axes import Axes
@@ -8,19 +9,18 @@ from matplotlib.figure import Figure
 
 from parts.result import Json, Result
 from parts.style import ALARM, Styles, line_of
-from parts.words import clean, plain, printable, scene_words, shorten, wrap
+from parts.words import clean, plain, printable, scene_words, short, shorten, wrap
 
 # All lengths in inches. Placing by hand keeps the panels' size the same, however long caption and legend are.
-LEFT, GAP, RIGHT = 1.45, 0.75, 0.2
-MAIN_WIDTH, LEGEND_WIDTH = 4.5, 3.0
+LEFT, NARROW, GAP, RIGHT = 1.45, 0.8, 0.75, 0.2
+MAIN_WIDTH, LEGEND_WIDTH, END_WIDTH = 4.5, 3.0, 1.5
 MAIN_HEIGHT, STEPS_HEIGHT, ROW_HEIGHT = 3.3, 1.7, 0.16
 BETWEEN, X_LABEL, LINE_HEIGHT = 0.14, 0.5, 0.15
 MARGIN = 0.2
 TIME_LABEL = "wall seconds per simulated second"
 
-TITLE_SIZE, FINDING_SIZE, WARNING_SIZE, CAPTION_SIZE, LEGEND_SIZE = 11, 9, 9.5, 7.5, 8
+TITLE_SIZE, FINDING_SIZE, WARNING_SIZE, CAPTION_SIZE, LEGEND_SIZE = 10, 9, 9.5, 7.5, 8
 FINDING_HEIGHT = 0.17
-LABEL_WIDTH, LABEL_LINES = 2.05, 2
 
 
 @dataclass
@@ -45,8 +45,8 @@ def make_sheet(result: Result, title: str, paragraphs: list[str], width: float, 
     warnings = warnings_of(result)
     lines = [line for paragraph in [*paragraphs, origin_sentence(result)] for line in wrap(paragraph, room, CAPTION_SIZE)]
     titles = wrap(title, room, TITLE_SIZE, "bold")
-    if len(titles) > 2:
-        titles = [titles[0], shorten(" ".join(titles[1:]), room, TITLE_SIZE, "bold")]
+    if len(titles) > 3:
+        titles = [*titles[:2], shorten(" ".join(titles[2:]), room, TITLE_SIZE, "bold")]
     found = wrap(printable(finding), room, FINDING_SIZE)
     bottom = 0.15 + LINE_HEIGHT * len(lines) + max(X_LABEL, hanging + 0.1)
     height = bottom + panels_height + 0.3 + 0.2 * (len(titles) + len(warnings)) + FINDING_HEIGHT * len(found)
@@ -58,32 +58,23 @@ def make_sheet(result: Result, title: str, paragraphs: list[str], width: float, 
             figure.text(MARGIN / width, (top - line_height * number) / height, text, va="top", **look)
 
     below = height - 0.16 - 0.2 * len(titles)
-    write(titles, height - 0.12, 0.2, fontsize=TITLE_SIZE, fontweight="bold")
+    write(["\n".join(titles)], height - 0.12, 0.2, fontsize=TITLE_SIZE, fontweight="bold", linespacing=1.25)
     write(found, below, FINDING_HEIGHT, fontsize=FINDING_SIZE)
     write(warnings, below - FINDING_HEIGHT * len(found), 0.2, fontsize=WARNING_SIZE, fontweight="bold", color=ALARM)
     write(lines, 0.1 + LINE_HEIGHT * len(lines), LINE_HEIGHT, fontsize=CAPTION_SIZE)
     return Sheet(figure, width, height, bottom)
 
 
-def add_legend(axes: Axes, styles: Styles, curves: dict[str, tuple[float, float]] | None = None) -> None:
+def add_legend(axes: Axes, styles: Styles, ends: dict[str, tuple[float, float]]) -> None:
     """To the right of the axes, those that lead; in the order in which their curves end there, from the upper one down."""
-    ends = curves or {}
     shown = sorted((name for name, style in styles.items() if style.leads), key=lambda name: -ends.get(name, (0, 0))[1])
-    axes.legend([line_of(styles[name], [], []) for name in shown], ["\n".join(label_lines(styles[name].label)) for name in shown],
-                loc="upper left", bbox_to_anchor=(1.02, 1), borderaxespad=0, frameon=False, fontsize=LEGEND_SIZE, handlelength=4.2,
-                labelspacing=0.55)
+    axes.legend([line_of(styles[name], [], []) for name in shown],
+                [shorten(short(styles[name].label), LEGEND_WIDTH - 0.75, LEGEND_SIZE) for name in shown], loc="upper left",
+                bbox_to_anchor=(1.02, 1), borderaxespad=0, frameon=False, fontsize=LEGEND_SIZE, handlelength=4.2, labelspacing=0.55)
 
 
 def legend_height(styles: Styles) -> float:
-    return sum(0.13 * len(label_lines(style.label)) + 0.07 for style in styles.values() if style.leads)
-
-
-def label_lines(label: str) -> list[str]:
-    """As many as a legend has room for; an ellipsis stands for the rest."""
-    lines = wrap(label, LABEL_WIDTH, LEGEND_SIZE)
-    if len(lines) > LABEL_LINES:
-        lines[LABEL_LINES - 1] = shorten(" ".join(lines[LABEL_LINES - 1:]), LABEL_WIDTH, LEGEND_SIZE)
-    return lines[:LABEL_LINES]
+    return 0.2 * sum(style.leads for style in styles.values())
 
 
 # ---- Words around a figure ---------------------------------------------------------------------------------------------
@@ -95,14 +86,14 @@ def warnings_of(result: Result) -> list[str]:
         [] if result.document["complete"] else ["INCOMPLETE - the run was cut short, points are missing"])
 
 
-def scene_sentence(scene: str, size: str, points: list[Json]) -> str:
+def scene_sentence(scene: str, points: list[Json]) -> str:
     """With the parameters that all points share; those that differ are the axis itself."""
     first, *others = [point["scene_parameters"] for point in points]
-    said = ("n", "N", "vertices", "resolution", "duration")  # these stand in the sentence already
+    said = ("n", "N", "vertices", "resolution", "duration")  # these stand in other sentences
     same = [f"{clean(key.replace('_', ' '))} {plain(value)}" for key, value in first.items()
             if key not in said and all(other.get(key) == value for other in others)]
     durations = " or ".join(f"{d:g}" for d in sorted({point["duration"] for point in points}))
-    return f"Scene {scene_words(scene)}: " + ", ".join([size, *same, f"{durations} s simulated"]) + "."
+    return f"Scene {scene_words(scene)}: {', '.join([*same, f'{durations} s simulated'])}."
 
 
 def sampling(result: Result) -> str:
@@ -110,11 +101,18 @@ def sampling(result: Result) -> str:
     return "one run a point" if reps == 1 else f"least of {plain(reps)} samples or more" if reps else "least sample"
 
 
+def noise_words(result: Result) -> str:
+    """How far apart 95 % of the times of one solver are from those of itself under another name."""
+    spread = result.noise.get("q95")
+    return (" No A/A pair: small differences mean nothing." if spread is None else
+            f" Times within {100 * math.expm1(spread):.2g} % (A/A pair) do not differ.")
+
+
 def settings_of_the_run(result: Result) -> list[str]:
     suite = result.suite
     given = result.context.get("seed", suite.get("seed"))
-    return [f"timeout {suite['timeout']:g} s" if "timeout" in suite else "", f"profile {plain(suite['profile'])}" if "profile" in suite else "",
-            f"seed {plain(given)}" if given is not None else ""]
+    return [*([f"timeout {suite['timeout']:g} s"] if "timeout" in suite else []),
+            *([f"profile {plain(suite['profile'])}"] if "profile" in suite else []), *([f"seed {plain(given)}"] if given is not None else [])]
 
 
 def origin_sentence(result: Result) -> str:

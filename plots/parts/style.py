@@ -33,23 +33,16 @@ class Look:
 
 @dataclass(frozen=True)
 class SolverStyle:
-    """Look of one solver. `contestant` is false for backends that the figures show but do not rank; `hollow` marks have no
-    face; `recedes` has the caption of those that are thin and pale, being neither first anywhere nor of the paper."""
+    """Look of one solver. `recedes` has the caption of those that are thin and pale: neither first anywhere, nor the paper's, nor plug-ins."""
 
     label: str
     color: str
     look: Look
-    contestant: bool = True
-    hollow: bool = False
     recedes: str = ""
 
     @property
     def leads(self) -> bool:
         return not self.recedes
-
-    @property
-    def prominent(self) -> bool:
-        return self.contestant and self.leads
 
 
 Styles = dict[str, SolverStyle]
@@ -72,16 +65,13 @@ SPARE_LOOKS = (
     Look(">", (7, 1.5, 3, 1.5)), Look("d", (2, 2)), Look("H", (10, 3)),
 )
 
-# Contestants that neither lead nor are the paper's: their caption, color and line by origin.
+# Contestants that do not lead: their caption, color and line by origin. Plug-ins, of which a reader asks first, all lead.
 RECEDING: dict[str, tuple[str, str, Dashes]] = {
     "project": ("Blue, pale: this project's", PALE_BLUE, ()),
     "literature": ("Brown, dashed: other published methods", PALE_BROWN, (4, 1.5)),
     "engine": ("Green, dotted: engines", PALE_GREEN, (1, 1)),
-    "elsewhere": ("Grey", PALE_GREY, ()),
+    "paper": ("Grey: the paper's in other time steppers", PALE_GREY, ()),
 }
-
-# Those that do not compete, all of them grey.
-NEUTRAL_LOOKS = (Look("", (), 0.8), Look("+", (1, 2), 0.8), Look("x", (4, 2), 0.8), Look("1", (6, 3), 0.8))
 
 # Applied with matplotlib.rc_context around the drawing; the fixed salt makes the ids in an SVG repeat from run to run.
 # Names come from files: none of them is a formula.
@@ -94,37 +84,23 @@ RC: dict[str, Any] = {
 
 
 def styles_for(names: Iterable[str], result: Result, leaders: set[str] | None = None) -> Styles:
-    """Style of each solver in the order of the legend, those that do not compete last. A variant comes after its family's solvers;
-    an unranked one looks as the solver that it is, but hollow. leaders: all other contestants recede."""
+    """Style of each solver in the order of the legend. A variant comes after its family's solvers. leaders: all others recede, but for
+    plug-ins."""
     wanted = set(names)
     solvers = {**result.solvers, **{name: result.known(name) for name in sorted(wanted - result.solvers.keys())}}
-
-    def original(solver: Solver) -> Solver:
-        other = solvers.get(solver.solver)
-        return other if solver.unranked and other and not other.solver else solver
-
     families: dict[str, list[Solver]] = {}
-    neutral = [solver for solver in solvers.values() if not solver.contestant]
     for solver in sorted(solvers.values(), key=lambda solver: bool(solver.solver)):
-        if solver.contestant and original(solver) is solver:
+        if not solver.unranked:
             families.setdefault(solver.family, []).append(solver)
 
     def style(solver: Solver) -> SolverStyle:
-        like = original(solver)
-        if like.contestant:
-            color, look = _look_in(list(families).index(like.family), families[like.family].index(like))
-        else:
-            color, look = GREY, NEUTRAL_LOOKS[neutral.index(like) % len(NEUTRAL_LOOKS)]
-        if like is not solver:
-            look = replace(look, width=0.8)
-        made = SolverStyle(clean(solver.label), color, look, like.contestant, solver.unranked)
-        if leaders is None or solver.name in leaders or not made.contestant:
-            return made
-        words, color, dashes = RECEDING.get(like.origin, RECEDING["elsewhere"])
-        return replace(made, color=color, look=replace(look, marker="", dashes=dashes, width=0.8), recedes=words)
+        color, look = _look_in(list(families).index(solver.family), families[solver.family].index(solver))
+        if leaders is None or solver.name in leaders or solver.origin not in RECEDING:
+            return SolverStyle(clean(solver.label), color, look)
+        words, color, dashes = RECEDING[solver.origin]
+        return SolverStyle(clean(solver.label), color, replace(look, marker="", dashes=dashes, width=0.8), words)
 
-    styles = {name: style(solver) for name, solver in solvers.items() if name in wanted}
-    return dict(sorted(styles.items(), key=lambda entry: not entry[1].contestant))
+    return {name: style(solver) for name, solver in solvers.items() if name in wanted and not solver.unranked}
 
 
 def line_of(style: SolverStyle, x: list[float], y: list[float], **more: Any) -> Line2D:
@@ -132,17 +108,14 @@ def line_of(style: SolverStyle, x: list[float], y: list[float], **more: Any) -> 
     look = style.look
     line = Line2D(x, y, color=style.color, marker=look.marker, markersize=look.size, linewidth=look.width, **more)
     line.set_linestyle((0, look.dashes) if look.dashes else "-")
-    if style.hollow:
-        line.set(markerfacecolor="none", markeredgecolor=style.color, markeredgewidth=0.9)
-    elif look.marker not in ("+", "x", "1"):  # these have no face that a rim could surround
-        line.set(markeredgecolor="white", markeredgewidth=0.5)
+    line.set(markeredgecolor="white", markeredgewidth=0.5)
     return line
 
 
 def receding_sentences(styles: Iterable[SolverStyle]) -> list[str]:
     """Which methods the pale lines are, a sentence for each kind."""
     kinds = {words: [style.label for style in styles if style.recedes == words] for words, *_ in RECEDING.values()}
-    return [f"{words}: {', '.join(labels)}." for words, labels in kinds.items() if labels]
+    return [f"{words}: {'; '.join(labels)}." for words, labels in kinds.items() if labels]
 
 
 def _look_in(family: int, place: int) -> tuple[str, Look]:

@@ -1,5 +1,7 @@
 """Words that fit: texts from result files made harmless, measured, cut and wrapped to a width."""
 
+import re
+from bisect import bisect_left
 from functools import lru_cache
 from typing import Any, Callable
 
@@ -28,6 +30,16 @@ def plain(value: Any) -> str:
     return clean(f"{value:g}" if isinstance(value, float) else value)
 
 
+def spoken(label: str) -> str:
+    """A solver's label as people say it: of "a, b in c", "b a in c"; so commas are between labels only."""
+    return re.sub(r"^([^,(]+), (\w+),?( in .*)?$", r"\2 \1\3", label)
+
+
+def short(label: str) -> str:
+    """Without what stands in parentheses."""
+    return re.sub(r" \([^)]*\)", "", label)
+
+
 def percent(fraction: float) -> str:
     return f"{100 * fraction:.4g} %"
 
@@ -43,7 +55,7 @@ def scene_words(scene: str) -> str:
 
 def subject(scene: str, vertices: int | None = None) -> str:
     """A scene in a title."""
-    name = "drape over a sphere" if scene == "drape" else scene_words(scene)
+    name = "drape over a sphere" if scene == "drape" else scene_words(scene).replace("_", " ")
     return name if vertices is None else f"{name}, {vertices:,} vertices"
 
 
@@ -68,9 +80,8 @@ def shorten(text: str, width: float, size: float, weight: str = "normal") -> str
     """The text, or as much of its beginning as is `width` inches wide."""
     if inches(text, size, weight) <= width:
         return text
-    while text and inches(text + ELLIPSIS, size, weight) > width:
-        text = text[:-1]
-    return text.rstrip() + ELLIPSIS
+    kept = bisect_left(range(len(text)), True, key=lambda n: inches(text[:n + 1] + ELLIPSIS, size, weight) > width)
+    return text[:kept].rstrip() + ELLIPSIS
 
 
 def wrap(text: str, width: float, size: float, weight: str = "normal") -> list[str]:
@@ -85,9 +96,9 @@ def wrapped(text: str, fits: Callable[[str], bool]) -> list[str]:
         if lines and fits(f"{lines[-1]} {word}"):
             lines[-1] += f" {word}"
             continue
-        lines.append("")
-        for letter in word:
-            if lines[-1] and not fits(lines[-1] + letter):
-                lines.append("")
-            lines[-1] += letter
+        while len(word) > 1 and not fits(word):
+            kept = max(1, bisect_left(range(len(word)), True, key=lambda n: not fits(word[:n + 1])))
+            lines.append(word[:kept])
+            word = word[kept:]
+        lines.append(word)
     return lines

@@ -310,7 +310,8 @@ def pictures() -> list[str]:
     """Pictures are of the commits that their results are of."""
     files = [*(ROOT / "results").glob("*.json")]
     commits = {file: json_of(file)["context"]["build"]["git"] for file in files}
-    errors = []
+    shown = "".join(map(read, documents()))
+    errors = [f"plots/figures/{picture.name} is shown by no document" for picture in (ROOT / "plots/figures").iterdir() if picture.name not in shown]
     for picture in sorted((ROOT / "plots/figures").glob("*.svg")):
         drawn = re.search(r"commit ([0-9a-f]{12})", read(picture))
         sweep = re.sub(r"-(figure|plane).*", "-", picture.stem)  # pieces of which it may be drawn from

@@ -156,7 +156,7 @@ def printable(value: Any) -> Any:
 
 def drawn(result: Json) -> dict[str, Figure]:
     with matplotlib.rc_context(RC):
-        pictures = {name: draw() for name, draw in figures.all_figures(analysed(result)).items()}
+        pictures = {name: draw() for name, draw in figures.all_figures(analysed(result), every=True).items()}
         for figure in pictures.values():
             figure.canvas.draw()
     return pictures
@@ -170,11 +170,16 @@ def axes_with(figure: Figure, xlabel: str = "", ylabel: str = "") -> Axes:
 
 def panels(figure: Figure) -> list[Axes]:
     """The main panels of a figure of cost: any motion, and motion that is right."""
-    return [axes for axes in figure.axes if axes.get_yscale() == "log" and not axes.get_xlabel() and "filter" not in axes.get_ylabel()]
+    return [axes for axes in figure.axes if axes.get_yscale() == "log" and not {axes.get_ylabel()} & {"filter alone (s)", "best time step (s)"}]
 
 
 def legend_labels(figure: Figure) -> list[str]:
     return [" ".join(text.get_text().split()) for axes in figure.axes if axes.get_legend() for text in axes.get_legend().get_texts()]
+
+
+def words(figure: Figure) -> str:
+    """Those around the panels."""
+    return " ".join(" ".join(text.get_text() for text in figure.texts).split())
 
 
 def strips(figure: Figure) -> list[Axes]:
@@ -187,7 +192,7 @@ def marks(strip: Axes) -> list[str]:
 
 def curves(axes: Axes, color: str | None = None) -> list[Any]:
     """Joined lines through two points or more, without the helping lines, which are grey and thin."""
-    return [line for line in axes.lines if line.get_linestyle() != "None" and len(line.get_xdata()) > 1 and line.get_gid() != "noise"
+    return [line for line in axes.lines if line.get_linestyle() != "None" and len(line.get_xdata()) > 1
             and line.get_color() not in ("#7F7F7F", "#FFE08A") and color in (None, line.get_color())]
 
 
