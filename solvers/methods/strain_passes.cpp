@@ -228,17 +228,14 @@ StrainPasses::Passed StrainPasses::in_turn(int most, WorkCounters& work) {
 std::int64_t StrainPasses::pass(Order order) {
   const FlushSubnormals flush;
   if (passes_ == passes_from_a_base) positions();
-  const bool settles = passes_ % 2 == 0 || found_nothing_;
-  if (settles) settle_contacts();
-  const bool middle = start_.rows() > 0, in_turn = order == Order::in_turn;
-  Displacements& to = in_turn ? u_ : correction_;
-  const std::int64_t corrected = middle ? pass<true>(to) : pass<false>(to);
-  if (corrected > 0 && !in_turn) {
-    u_ += correction_;
-    correction_.setZero();
-  }
-  found_nothing_ = corrected == 0;
-  return corrected > 0 || settles ? corrected : pass(order);
+  settle_contacts();
+  const bool middle = start_.rows() > 0;
+  if (order == Order::in_turn) return middle ? pass<true>(u_) : pass<false>(u_);
+  const std::int64_t corrected = middle ? pass<true>(correction_) : pass<false>(correction_);
+  if (corrected == 0) return 0;
+  u_ += correction_;
+  correction_.setZero();
+  return corrected;
 }
 
 // One pass, which adds the corrections to `to`. The first from a base measures it.

@@ -71,8 +71,8 @@ class StrainPasses {
   static StrainPasses by_mass(const Problem& problem, const StrainBand& band, double relaxation);
 
   // Positions (3 x n) in and out, and contacts with them. store() leaves pinned vertices alone.
-  // Contacts of x are settled before every second pass from now on, and before the one that finds
-  // nothing to correct, where they hold.
+  // Contacts of x are settled before each pass from now on, so that they hold wherever a pass finds
+  // nothing to correct.
   void load(Iterate x);
   void store(Positions& x);
   // From now on corrections point along the edges as they are in the middle of the step from
@@ -165,7 +165,6 @@ class StrainPasses {
   Places start_;                   // of the step; empty: middles are not asked for
   Displacements u_, correction_;
   int passes_ = 0;                // from this base
-  bool found_nothing_ = false;    // the last pass
   bool planes_measured_ = false;  // at this base
 };
 
