@@ -15,7 +15,7 @@ struct ClothMesh {
   std::vector<std::array<int, 3>> triangles;  // what is left
   std::vector<std::array<int, 2>> ropes = {};
   std::vector<int> in_file = {};  // of each vertex, its place in the file; empty once it is refined
-  // Of each quad, whether its first side runs along the texture's u, which is warp; empty: unknown.
+  // Whether the first side of each quad runs along the texture's u, which is warp; empty: unknown.
   std::vector<char> along_u = {};
   std::vector<char> held = {};    // of each vertex, whether a scene pins it
   std::vector<char> loaded = {};  // whether a weight hangs there

@@ -367,7 +367,7 @@ std::string description_of(const MeshModel& model, const MeshFile& file, const C
   text += concat("  ", count_cloth(cloth).second,
                  " sides keep their length; pinned: ", std::ranges::count(cloth.held, char{1}),
                  " vertices; loaded: ", std::ranges::count(cloth.loaded, char{1}), "\n");
-  text += remarks_of(file);
+  text += model.remarks;
   text += concat("  below: ", model.body.triangles.size(), " triangles of a body",
                  model.poses.empty() ? "" : " that moves",
                  model.floor ? concat(", a floor at ", *model.floor) : "", "\n");
@@ -476,8 +476,8 @@ std::shared_ptr<const MeshModel> read_model(const std::string& name) {
                      "': nothing is pinned and nothing is below; add --pins 'y > ...', --floor "
                      "HEIGHT or --collider FILE");
   check_cloth(path, file, cloth, model->has_body(), welded.has_value());
-  model->description = description_of(*model, file, cloth);
   model->remarks = remarks_of(file);
+  model->description = description_of(*model, file, cloth);
   // What has this content has been checked before.
   if (model->body.triangles.empty() || !expected.empty()) return model;
   try {

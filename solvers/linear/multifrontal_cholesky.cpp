@@ -183,6 +183,75 @@ bool take_panel(const Trapezoid<Real>& front, int k, const Real* bound, Real* pi
 template <class Real>
 using Four = typename VectorOf<Real, 4 * sizeof(Real)>::type;
 
+// In single precision a vector has room for two rows of four numbers, four rows apart, so that a
+// factor's number gets to its row within its half of a vector.
+struct TwoRows {
+  using Vector = Lanes<float>;
+  using Row = Four<float>;
+  static Vector from(const float* w) {
+    Row first, second;
+    load(w, first);
+    load(w + 16, second);
+    return __builtin_shufflevector(first, second, 0, 1, 2, 3, 4, 5, 6, 7);
+  }
+  static Row first(const Vector& v) { return __builtin_shufflevector(v, v, 0, 1, 2, 3); }
+  static Row second(const Vector& v) { return __builtin_shufflevector(v, v, 4, 5, 6, 7); }
+  template <int p>
+  static Vector spread(const Vector& column) {
+    return __builtin_shufflevector(column, column, p, p, p, p, 4 + p, 4 + p, 4 + p, 4 + p);
+  }
+};
+
+// Takes K columns times x from the rows w below them.
+template <int K>
+void subtract_from_below(const float* l, Distance ld, int n, const TwoRows::Row* x, float* w) {
+  TwoRows::Vector twice[K];
+#pragma GCC unroll 8
+  for (int c = 0; c < K; ++c)
+    twice[c] = __builtin_shufflevector(x[c], x[c], 0, 1, 2, 3, 0, 1, 2, 3);
+  for (int i = K; i < n; i += 8) {
+    TwoRows::Vector sum[4];
+#pragma GCC unroll 4
+    for (int p = 0; p < 4; ++p) sum[p] = TwoRows::from(w + 4 * (i + p));
+#pragma GCC unroll 8
+    for (int c = 0; c < K; ++c) {
+      TwoRows::Vector column;
+      load(l + c * ld + i, column);
+      sum[0] -= TwoRows::spread<0>(column) * twice[c];
+      sum[1] -= TwoRows::spread<1>(column) * twice[c];
+      sum[2] -= TwoRows::spread<2>(column) * twice[c];
+      sum[3] -= TwoRows::spread<3>(column) * twice[c];
+    }
+#pragma GCC unroll 4
+    for (int p = 0; p < 4; ++p) {
+      store(TwoRows::first(sum[p]), w + 4 * (i + p));
+      store(TwoRows::second(sum[p]), w + 4 * (i + p) + 16);
+    }
+  }
+}
+
+// Takes the columns' products with the rows w below them from x.
+template <int K>
+void subtract_below(const float* l, Distance ld, int n, const float* w, TwoRows::Row* x) {
+  TwoRows::Vector sum[K] = {};
+  for (int i = K; i < n; i += 8) {
+    TwoRows::Vector value[4];
+#pragma GCC unroll 4
+    for (int p = 0; p < 4; ++p) value[p] = TwoRows::from(w + 4 * (i + p));
+#pragma GCC unroll 8
+    for (int c = 0; c < K; ++c) {
+      TwoRows::Vector column;
+      load(l + c * ld + i, column);
+      sum[c] += TwoRows::spread<0>(column) * value[0];
+      sum[c] += TwoRows::spread<1>(column) * value[1];
+      sum[c] += TwoRows::spread<2>(column) * value[2];
+      sum[c] += TwoRows::spread<3>(column) * value[3];
+    }
+  }
+#pragma GCC unroll 8
+  for (int c = 0; c < K; ++c) x[c] -= TwoRows::first(sum[c]) + TwoRows::second(sum[c]);
+}
+
 // K columns of forward substitution on the front's rows w, each an X: the triangle, then the rows
 // below it, single numbers several at once.
 template <int K, class X, class Real>
@@ -199,6 +268,7 @@ void substitute_forward(const Real* l, Distance ld, int n, Real* w) {
   }
 #pragma GCC unroll 8
   for (int c = 0; c < K; ++c) store(x[c], w + width * c);
+  if constexpr (std::is_same_v<X, TwoRows::Row>) return subtract_from_below<K>(l, ld, n, x, w);
   for (int i = K; i < n; i += step) {
     std::conditional_t<single, Lanes<Real>, X> sum;
     load(w + width * i, sum);
@@ -219,7 +289,9 @@ void substitute_back(const Real* l, Distance ld, int n, Real* w) {
   X x[K];
 #pragma GCC unroll 8
   for (int c = 0; c < K; ++c) load(w + width * c, x[c]);
-  if constexpr (width == 1) {
+  if constexpr (std::is_same_v<X, TwoRows::Row>) {
+    subtract_below<K>(l, ld, n, w, x);
+  } else if constexpr (width == 1) {
     Lanes<Real> sum[K] = {};
     for (int i = K; i < n; i += lanes<Real>) {
       Lanes<Real> value, column;
@@ -252,90 +324,6 @@ void substitute_back(const Real* l, Distance ld, int n, Real* w) {
   }
 }
 
-// In single precision a vector has room for two rows of four numbers, four rows apart, so that a
-// factor's number gets to its row within its half of a vector.
-struct TwoRows {
-  using Vector = Lanes<float>;
-  using Row = Four<float>;
-  static Vector from(const float* w) {
-    Row first, second;
-    load(w, first);
-    load(w + 16, second);
-    return __builtin_shufflevector(first, second, 0, 1, 2, 3, 4, 5, 6, 7);
-  }
-  static Row first(const Vector& v) { return __builtin_shufflevector(v, v, 0, 1, 2, 3); }
-  static Row second(const Vector& v) { return __builtin_shufflevector(v, v, 4, 5, 6, 7); }
-  template <int p>
-  static Vector spread(const Vector& column) {
-    return __builtin_shufflevector(column, column, p, p, p, p, 4 + p, 4 + p, 4 + p, 4 + p);
-  }
-};
-
-template <int K>
-void two_rows_forward(const float* l, Distance ld, int n, float* w) {
-  TwoRows::Row x[K];
-  TwoRows::Vector twice[K];
-#pragma GCC unroll 8
-  for (int c = 0; c < K; ++c) load(w + 4 * c, x[c]);
-#pragma GCC unroll 8
-  for (int c = 0; c < K; ++c) {
-#pragma GCC unroll 8
-    for (int r = c + 1; r < K; ++r) x[r] -= l[c * ld + r] * x[c];
-    store(x[c], w + 4 * c);
-    twice[c] = __builtin_shufflevector(x[c], x[c], 0, 1, 2, 3, 0, 1, 2, 3);
-  }
-  for (int i = K; i < n; i += 8) {
-    TwoRows::Vector sum[4];
-#pragma GCC unroll 4
-    for (int p = 0; p < 4; ++p) sum[p] = TwoRows::from(w + 4 * (i + p));
-#pragma GCC unroll 8
-    for (int c = 0; c < K; ++c) {
-      TwoRows::Vector column;
-      load(l + c * ld + i, column);
-      sum[0] -= TwoRows::spread<0>(column) * twice[c];
-      sum[1] -= TwoRows::spread<1>(column) * twice[c];
-      sum[2] -= TwoRows::spread<2>(column) * twice[c];
-      sum[3] -= TwoRows::spread<3>(column) * twice[c];
-    }
-#pragma GCC unroll 4
-    for (int p = 0; p < 4; ++p) {
-      store(TwoRows::first(sum[p]), w + 4 * (i + p));
-      store(TwoRows::second(sum[p]), w + 4 * (i + p) + 16);
-    }
-  }
-}
-
-template <int K>
-void two_rows_back(const float* l, Distance ld, int n, float* w) {
-  TwoRows::Row x[K];
-  TwoRows::Vector sum[K] = {};
-  for (int i = K; i < n; i += 8) {
-    TwoRows::Vector value[4];
-#pragma GCC unroll 4
-    for (int p = 0; p < 4; ++p) value[p] = TwoRows::from(w + 4 * (i + p));
-#pragma GCC unroll 8
-    for (int c = 0; c < K; ++c) {
-      TwoRows::Vector column;
-      load(l + c * ld + i, column);
-      sum[c] += TwoRows::spread<0>(column) * value[0];
-      sum[c] += TwoRows::spread<1>(column) * value[1];
-      sum[c] += TwoRows::spread<2>(column) * value[2];
-      sum[c] += TwoRows::spread<3>(column) * value[3];
-    }
-  }
-#pragma GCC unroll 8
-  for (int c = 0; c < K; ++c) {
-    load(w + 4 * c, x[c]);
-    x[c] -= TwoRows::first(sum[c]) + TwoRows::second(sum[c]);
-  }
-#pragma GCC unroll 8
-  for (int c = K - 1; c >= 0; --c) {
-#pragma GCC unroll 8
-    for (int r = 0; r < c; ++r) x[r] -= l[r * ld + c] * x[c];
-    store(x[c], w + 4 * c);
-  }
-}
-
 // The dense steps by the width of their panel, less one.
 template <class Real>
 struct OfWidth {
@@ -345,17 +333,10 @@ struct OfWidth {
 };
 template <class Real, int... smaller>
 constexpr std::array<OfWidth<Real>, panel> of_widths(std::integer_sequence<int, smaller...>) {
-  constexpr bool two_rows = std::is_same_v<Real, float>;
-  if constexpr (two_rows) {
-    return {{{take_panel<smaller + 1, Real>, substitute_forward<smaller + 1, Real, Real>,
-              substitute_back<smaller + 1, Real, Real>, two_rows_forward<smaller + 1>,
-              two_rows_back<smaller + 1>}...}};
-  } else {
-    return {{{take_panel<smaller + 1, Real>, substitute_forward<smaller + 1, Real, Real>,
-              substitute_back<smaller + 1, Real, Real>,
-              substitute_forward<smaller + 1, Four<Real>, Real>,
-              substitute_back<smaller + 1, Four<Real>, Real>}...}};
-  }
+  return {
+      {{take_panel<smaller + 1, Real>, substitute_forward<smaller + 1, Real, Real>,
+        substitute_back<smaller + 1, Real, Real>, substitute_forward<smaller + 1, Four<Real>, Real>,
+        substitute_back<smaller + 1, Four<Real>, Real>}...}};
 }
 template <class Real>
 constexpr auto of_width = of_widths<Real>(std::make_integer_sequence<int, panel>());

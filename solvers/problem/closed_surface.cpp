@@ -140,21 +140,27 @@ void ClosedSurface::lay_out_grid() {
   low_ -= box_margin;
   cell_size_ = (high + box_margin - low_) / resolution;
   inverse_cell_size_ = cell_size_.cwiseInverse();
-  Balls balls(triangles(), 4);
   for (int f = 0; f < triangles(); ++f) {
     const Vector3d& normal = pseudonormal_[f][0];
     planes_.emplace_back(normal.x(), normal.y(), normal.z(), normal.dot(corner(mesh_, f, 0)));
-    const Vector3d middle = (corner(mesh_, f, 0) + corner(mesh_, f, 1) + corner(mesh_, f, 2)) / 3;
-    balls.row(f) << middle.transpose(), 0;
-    for (int i = 0; i < 3; ++i)
-      balls(f, 3) = std::max(balls(f, 3), (corner(mesh_, f, i) - middle).norm());
   }
   std::vector<int> all(triangles());
   std::iota(all.begin(), all.end(), 0);
   cell_.assign(resolution * resolution * resolution, outside);
   lists_.add(all);  // deep
   convex_ ? refine_planes(Eigen::Vector3i::Zero(), resolution, all)
-          : refine(Eigen::Vector3i::Zero(), resolution, all, balls);
+          : refine(Eigen::Vector3i::Zero(), resolution, all, balls_around_triangles());
+}
+
+ClosedSurface::Balls ClosedSurface::balls_around_triangles() const {
+  Balls balls(triangles(), 4);
+  for (int f = 0; f < triangles(); ++f) {
+    const Vector3d middle = (corner(mesh_, f, 0) + corner(mesh_, f, 1) + corner(mesh_, f, 2)) / 3;
+    balls.row(f) << middle.transpose(), 0;
+    for (int i = 0; i < 3; ++i)
+      balls(f, 3) = std::max(balls(f, 3), (corner(mesh_, f, i) - middle).norm());
+  }
+  return balls;
 }
 
 std::size_t ClosedSurface::cell_index(const Eigen::Vector3i& cell) const {

@@ -65,6 +65,7 @@ class ClosedSurface {
   void check_orientation();
   void lay_out_grid();
   using Balls = Eigen::ArrayX4d;  // around triangles: centre and radius
+  Balls balls_around_triangles() const;
   void refine(const Eigen::Vector3i& cell, int size, const std::vector<int>& candidates,
               const Balls& balls);
   void refine_planes(const Eigen::Vector3i& cell, int size, const std::vector<int>& candidates);

@@ -57,11 +57,13 @@ struct Vertices {
   Part part[3];
 };
 
-double root(double x) { return std::sqrt(x); }
-Four root(const Four& x) {
-  Four roots;
-  for (int i = 0; i < 4; ++i) roots[i] = std::sqrt(x[i]);
-  return roots;
+// A spring without length has no direction: its force stays finite, and times d it vanishes.
+constexpr double no_length = 1e-200;  // m
+double length_of(double squared) { return std::max(std::sqrt(squared), no_length); }
+Four length_of(const Four& squared) {
+  Four lengths;
+  for (int i = 0; i < 4; ++i) lengths[i] = length_of(squared[i]);
+  return lengths;
 }
 
 // Calls act.operator()<n>(i) for numbers i ... i + n - 1 of those from begin to end.
@@ -103,12 +105,9 @@ void add_bending(const BendingStencil& s, std::size_t count, const double* w, co
 template <int n>
 void add_springs(const Edge& e, const double* k, const double* r, const double* w, const double* p,
                  double scale, double* q) {
-  constexpr double no_length = 1e-200;  // m; such a spring has no direction, and d takes its force
   auto d = Vertices<n>::at(p + 3 * e.b), a = Vertices<n>::at(p + 3 * e.a);
   for (int i = 0; i < 3; ++i) d.part[i] -= a.part[i];
-  const auto length = root(d.squared_norms());
-  const auto f = scale * numbers<n>(k) *
-                 (1 - numbers<n>(r) / (length > no_length ? length : no_length + 0 * length));
+  const auto f = scale * numbers<n>(k) * (1 - numbers<n>(r) / length_of(d.squared_norms()));
   a = Vertices<n>::at(q + 3 * e.a);
   a.add(f * numbers<n>(w + e.a), d);
   a.write(q + 3 * e.a);

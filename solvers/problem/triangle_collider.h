@@ -29,7 +29,7 @@ class TriangleCollider final : public Collider {
   int triangles() const override { return static_cast<int>(mesh_.triangles.size()); }
   const TriangleMesh& mesh() const { return mesh_; }
 
-  // Of the piece of least signed distance.
+  // The nearest point of the piece of least signed distance.
   using Nearest = ClosedSurface::Nearest;
   Nearest nearest(const Eigen::Vector3d& p) const;
   Nearest nearest_by_all(const Eigen::Vector3d& p) const;

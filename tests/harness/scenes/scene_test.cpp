@@ -30,9 +30,10 @@ TEST(EveryScene, StartsAsItPromises) {
     for (const auto& [a, b, c] : scene.triangles)
       for (const auto& side : {std::pair(a, b), {b, c}, {c, a}})
         EXPECT_TRUE(sides.insert(side).second);
-    if (const auto* body = dynamic_cast<const TriangleCollider*>(scene.problem->collider()))
+    if (const auto* body = dynamic_cast<const TriangleCollider*>(scene.problem->collider())) {
       for (const auto& place : scene.start.x.colwise())
         EXPECT_GT(body->nearest(place).signed_distance, 0);
+    }
     if (type.exact) {
       constexpr double dt = 1e-6;
       const Positions now = type.exact(p, 0), soon = type.exact(p, dt);
