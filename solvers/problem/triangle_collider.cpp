@@ -44,6 +44,7 @@ std::vector<TriangleMesh> pieces_of(const TriangleMesh& mesh) {
       std::ranges::any_of(found, [](const auto& one) { return !(one.second.volume > 0); }))
     return {mesh};
   std::vector<Piece*> by_size;
+  by_size.reserve(found.size());
   for (auto& [unused, piece] : found) by_size.push_back(&piece);
   std::ranges::stable_sort(by_size, std::greater<>(),
                            [](const Piece* piece) { return piece->box.diagonal().norm(); });
