@@ -7,10 +7,11 @@
 
 namespace harness::analysis {
 
-Point::Point(const json& document, double noise)
+Point::Point(const json& document, double noise, double scatter)
     : result_(std::make_shared<PointResult>(point_of(document))),
       id_(document.at("id")),
-      noise_(noise) {}
+      noise_(noise),
+      scatter_(scatter) {}
 
 double Point::scene_parameter(const char* name) const {
   const auto place = spec().scene_parameters.find(name);
@@ -32,8 +33,77 @@ ErrorAtLevel Point::error_at(double level) const {
   return harness::error_at(measures(), level == any_motion ? headline_error : level);
 }
 
+namespace {
+
+// By occasion, of those that both have.
+std::map<int, double> ratios_of_occasions(const Point& a, const Point& b) {
+  const auto others = b.result().times();
+  std::map<int, double> ratios;
+  for (const auto& [occasion, seconds] : a.result().times())
+    if (const auto other = others.find(occasion); other != others.end())
+      ratios[occasion] = seconds / other->second;
+  return ratios;
+}
+
+// The values but that of one occasion; -1: all.
+std::vector<double> values_without(const std::map<int, double>& by_occasion, int without) {
+  std::vector<double> values;
+  for (const auto& [occasion, value] : by_occasion)
+    if (occasion != without) values.push_back(value);
+  return values;
+}
+
+}  // namespace
+
 Ratio ratio(const Point& a, const Point& b) {
-  return ratio_of_times(a.result().samples, b.result().samples, std::fmax(a.noise(), b.noise()));
+  const double noise = std::fmax(a.noise(), b.noise());
+  const auto ratios = values_without(ratios_of_occasions(a, b), -1);
+  const double scatter = std::fmax(a.scatter(), b.scatter());
+  return ratios.size() > 1 && std::isfinite(scatter)
+             ? ratio_on_another_day(ratios, scatter, noise)
+             : ratio_of_times(a.result().samples, b.result().samples, noise);
+}
+
+Coverage coverage_of(const Runs& runs) {
+  const auto place_of = [](const Point& p) {
+    return std::tuple(p.scene(), p.sweep(), p.spec().scene_parameters, p.strain_limit());
+  };
+  std::vector<Point> best;
+  std::ranges::copy_if(runs.points, std::back_inserter(best), [](const Point& p) {
+    return p.ok() && (p.result().best || !p.result().best_at_errors.empty());
+  });
+  Coverage found;
+  for (const Point& p : best)
+    found.occasions = std::max(found.occasions, static_cast<int>(p.result().times().size()));
+  for (int day = 0; found.occasions > 2 && day < found.occasions; ++day) {
+    std::vector<std::vector<double>> times;
+    for (const Point& p : best) times.push_back(values_without(p.result().times(), day));
+    const double scatter = scatter_of(times);
+    for (const auto& [place, here] : grouped(best, place_of)) {
+      for (std::size_t i = 0; i < here.size(); ++i) {
+        for (std::size_t j = i + 1; j < here.size(); ++j) {
+          const auto ratios = ratios_of_occasions(here[i], here[j]);
+          const auto then = ratios.find(day);
+          if (then == ratios.end() || ratios.size() < 3) continue;
+          const Ratio ratio =
+              ratio_on_another_day(values_without(ratios, day), scatter, here[i].noise());
+          ++found.ratios;
+          found.outside += then->second < ratio.low || then->second > ratio.high;
+        }
+      }
+    }
+  }
+  return found;
+}
+
+std::string text(const Coverage& coverage) {
+  if (coverage.occasions < 2) return "";
+  std::string words = concat("The best runs were timed on ", coverage.occasions, " occasions");
+  if (coverage.ratios > 0)
+    words += concat("; of ", coverage.ratios, " ratios of two times on one of them, ",
+                    percent(static_cast<double>(coverage.outside) / coverage.ratios),
+                    " lay outside the interval that the others give (5 % are to be expected)");
+  return words + ".";
 }
 
 ContestantRoles::ContestantRoles(const json& document) {
@@ -61,8 +131,11 @@ Role ContestantRoles::of(const std::string& contestant) const {
 Runs::Runs(const json& document) : roles(document), levels{any_motion} {
   const json q95 = document.value(json::json_pointer("/context/noise/q95"), json());
   const double noise = q95.is_number() ? q95.get<double>() : std::nan("");
+  const json between = document.value(json::json_pointer("/context/scatter"), json());
+  const double scatter = between.is_number() ? between.get<double>() : std::nan("");
   // Where results were joined, each point has its own file's.
-  for (const json& p : document.at("points")) points.emplace_back(p, p.value("noise", noise));
+  for (const json& p : document.at("points"))
+    points.emplace_back(p, p.value("noise", noise), p.value("scatter", scatter));
   const double finest =
       document.value(json::json_pointer("/context/suite/finest_error"), answer_levels.back());
   for (const double level : answer_levels)

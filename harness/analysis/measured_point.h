@@ -9,8 +9,9 @@ namespace harness::analysis {
 // A run of a result file. Copies share their data.
 class Point {
  public:
-  // noise: of the file's A/A pair, see ratio_of_times.
-  explicit Point(const json& document, double noise = std::nan(""));
+  // noise: of the file's A/A pair, see ratio_of_times. scatter: between its occasions, see
+  // ratio_on_another_day.
+  explicit Point(const json& document, double noise = std::nan(""), double scatter = std::nan(""));
 
   const PointResult& result() const { return *result_; }
   const PointSpec& spec() const { return result_->spec; }
@@ -31,6 +32,7 @@ class Point {
 
   double seconds() const { return result_->seconds(); }  // not-a-number where nothing was timed
   double noise() const { return noise_; }
+  double scatter() const { return scatter_; }
   // The largest strain that a user gets, hence after the collision filter.
   double delivered_strain() const;
   // In the paper's order the obstacle pushes vertices out after the solve (contact 0).
@@ -43,10 +45,24 @@ class Point {
  private:
   std::shared_ptr<const PointResult> result_;
   std::string id_;
-  double noise_;
+  double noise_, scatter_;
 };
 
-Ratio ratio(const Point& a, const Point& b);  // of a's time to b's
+// Of a's time to b's. Where both were timed on several occasions, the interval is that of another
+// day; otherwise it is that of their samples.
+Ratio ratio(const Point& a, const Point& b);
+
+// How well intervals hold on another day. Every occasion is compared with the interval that the
+// others give, which takes three.
+struct Coverage {
+  int ratios = 0, outside = 0;
+  int occasions = 0;  // most of any point
+};
+// Of all pairs of best points in one place.
+struct Runs;
+Coverage coverage_of(const Runs& runs);
+// A sentence, "" for a single occasion.
+std::string text(const Coverage& coverage);
 
 struct Role {
   std::string name, family, solver;

@@ -27,7 +27,7 @@ std::string why_empty(const std::vector<Point>& here, double level, double known
     return "no run that was tried has a motion error of at most " + percent(level);
   if (!any([](const Point& p) { return !p.measures().reference.empty(); }))
     return "there is no reference";
-  return any([](const Point& p) { return !p.measures().error_series.empty(); })
+  return any([](const Point& p) { return !levels_of_series(p.measures()).empty(); })
              ? "the reference is not known to within " + percent(level)
              : "the file has no errors";
 }

@@ -123,6 +123,45 @@ Ratio ratio_of_times(const std::vector<double>& a, const std::vector<double>& b,
   return ratio;
 }
 
+Ratio ratio_on_another_day(const std::vector<double>& ratios, double scatter, double noise) {
+  const auto n = static_cast<double>(ratios.size());
+  Ratio ratio;
+  if (n < 2) return ratio;
+  double mean = 0, squares = 0;
+  for (const double r : ratios) mean += std::log(r) / n;
+  for (const double r : ratios) squares += std::pow(std::log(r) - mean, 2);
+  const double freedom = n - 1 + prior_occasions;
+  const double spread = std::sqrt((squares + prior_occasions * scatter * scatter) / freedom);
+  double half = gsl_cdf_tdist_Pinv(0.975, freedom) * spread * std::sqrt(1 + 1 / n);
+  if (noise > half) half = noise;
+  const auto [least, most] = std::ranges::minmax(ratios);
+  return {std::exp(mean), std::min(least, std::exp(mean - half)),
+          std::max(most, std::exp(mean + half))};
+}
+
+double scatter_of(const std::vector<std::vector<double>>& times) {
+  std::size_t occasions = 0;
+  for (const auto& own : times) occasions = std::max(occasions, own.size());
+  std::vector<double> by_occasion(occasions, 0.0);
+  std::vector<std::vector<double>> rest;  // logarithms, less the program's own mean
+  for (const auto& own : times) {
+    if (own.size() < occasions) continue;
+    std::vector<double>& logs = rest.emplace_back();
+    double mean = 0;
+    for (const double t : own) mean += std::log(t) / static_cast<double>(occasions);
+    for (const double t : own) logs.push_back(std::log(t) - mean);
+    for (std::size_t k = 0; k < occasions; ++k) by_occasion[k] += logs[k];
+  }
+  if (rest.size() < 2 || occasions < 2) return std::numeric_limits<double>::quiet_NaN();
+  const auto programs = static_cast<double>(rest.size());
+  double squares = 0;
+  for (const auto& logs : rest)
+    for (std::size_t k = 0; k < occasions; ++k)
+      squares += std::pow(logs[k] - by_occasion[k] / programs, 2);
+  // Of a single time; a ratio has two.
+  return std::sqrt(2 * squares / ((programs - 1) * static_cast<double>(occasions - 1)));
+}
+
 Slope log_log_slope(std::span<const double> x, std::span<const double> y) {
   std::vector<double> log_x, log_y;
   for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i) {

@@ -49,6 +49,21 @@ struct Ratio {
 Ratio ratio_of_times(const std::vector<double>& a, const std::vector<double>& b,
                      double noise = std::numeric_limits<double>::quiet_NaN());
 
+// The ratio of two times on another day, from ratios on two occasions or more. Logarithms of ratios
+// are taken as normal, with a variance that varies from pair to pair: `scatter`^2 is what it is for
+// pairs in general, and counts like prior_occasions further ones (an inverse gamma prior: Smyth
+// 2004, Statistical Applications in Genetics 3:1). The interval is that of one further ratio
+// (Student's t); it holds all ratios that were seen, and is no narrower than `noise` makes it.
+// value: their geometric mean.
+Ratio ratio_on_another_day(const std::vector<double>& ratios, double scatter,
+                           double noise = std::numeric_limits<double>::quiet_NaN());
+constexpr double prior_occasions = 4;
+
+// Standard deviation of the logarithm of a ratio of two times between occasions. times: of each
+// program by occasion; programs without all occasions do not count. What an occasion makes slower
+// in all programs does not count either. Not-a-number for fewer than two programs or occasions.
+double scatter_of(const std::vector<std::vector<double>>& times);
+
 struct Slope {
   double value = std::numeric_limits<double>::quiet_NaN();
   // Half the 95 % confidence interval (Student's t); infinite for two points.

@@ -97,6 +97,8 @@ Action verb(const Command& command) {
 #define HARNESS_VERBS(VERB)                                                                       \
   VERB(sweep, true,                                                                               \
        "time over strain limit, resolution or step, or hard cases: bench --sweep AXIS")           \
+  VERB(repeat, true,                                                                              \
+       "time the best points of a result again, on another day or machine, and add the times")    \
   VERB(show, false,                                                                               \
        "print a result file: which method is fastest within each strain limit and error")         \
   VERB(plot, false,                                                                               \

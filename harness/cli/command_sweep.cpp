@@ -196,8 +196,126 @@ struct SweepCommand : SweepOptions, OutputOptions {
   }
 };
 
+// ---- A result's best points once more, on another day or machine ----
+
+struct RepeatCommand {
+  std::string file;
+  bool no_wait = false;
+
+  void declare(const Command& command) {
+    command.option("file", file, "a complete result of a sweep", "FILE");
+    command.require({"file"});
+    add_no_wait(command, no_wait);
+  }
+
+  // The rows of the document that are timed again.
+  static std::map<std::size_t, PointResult> best_points(const json& document,
+                                                        const std::string& file) {
+    std::map<std::size_t, PointResult> best;
+    for (std::size_t i = 0; i < document.at("points").size(); ++i) {
+      const PointResult point = point_of(document.at("points")[i]);
+      if (!point.ok() || (!point.best && point.best_at_errors.empty())) continue;
+      if (!find_backend(point.spec.solver))
+        throw UsageError("'" + file + "' has runs of '" + point.spec.solver +
+                         "', which this program does not know: load it with --plugin");
+      best.emplace(i, point);
+    }
+    if (best.empty()) throw UsageError("'" + file + "' has no best points to be timed again");
+    return best;
+  }
+
+  // A repetition that was interrupted is continued by the same program.
+  static void begin(Journal& journal, const json& document, const json& context) {
+    const json header = {{"schema", "inextensible-journal/2"},
+                         {"occasion", document.at("context").value("occasions", json::array())},
+                         {"program", context.at("build")},
+                         {"processor", context.at("cpu_model")}};
+    if (journal.header() == header)
+      journal.go_on(header);
+    else
+      journal.start(header);
+  }
+
+  // Adds the occasion to the document.
+  static void add(json& document, const json& context, const std::optional<PairNoise>& noise,
+                  const std::map<std::size_t, PointResult>& timed) {
+    json& occasions = document["context"]["occasions"];
+    if (occasions.is_null()) occasions = json::array();
+    occasions.push_back({{"date", context.at("date")},
+                         {"cpu_model", context.at("cpu_model")},
+                         {"commit", context.at("build").at("git")},
+                         {"load_avg", context.at("load_avg")},
+                         {"noise", noise ? json(noise->q95) : json()}});
+    const auto occasion = static_cast<double>(occasions.size());
+    std::vector<std::vector<double>> all;
+    for (const auto& [row, more] : timed) {
+      PointResult point = point_of(document.at("points")[row]);
+      if (!more.samples.empty())
+        point.occasions.push_back({occasion, more.seconds(), quantile(more.samples, 0.5)});
+      document["points"][row] = row_of(point);
+      auto& times = all.emplace_back();
+      for (const auto& [unused, seconds] : point.times()) times.push_back(seconds);
+    }
+    document["context"]["scatter"] = number(scatter_of(all));
+  }
+
+  int run() const {
+    json document = read_result(file);
+    if (!is_sweep(document) || !is_timed(document) || !document.value("complete", true))
+      throw UsageError("'" + file + "' is no complete, timed result of a sweep over strain, " +
+                       "resolution or step");
+    auto best = best_points(document, file);
+    const Suite suite = document.at("context").at("suite");
+    const TimingLock lock(!no_wait);
+    const json context = machine_context();
+    warn_if_busy(context);
+    Journal journal(file);
+    begin(journal, document, context);
+    std::vector<PointResult> points;
+    for (const auto& [row, point] : best) points.push_back(point);
+    Progress progress;
+    NoiseProbe noise_probe;
+    std::vector<Samples> samples;
+    try {
+      samples = time_again(suite, points, shown(progress),
+                           journaled(watched(isolated(run_point, 0), noise_probe, true), journal));
+    } catch (const Interrupted&) {
+      std::cerr << "bench: interrupted; the same command continues from here\n";
+      return interrupted_exit;
+    }
+    progress.clear();
+    for (std::size_t i = 0; i < points.size(); ++i) static_cast<Samples&>(points[i]) = samples[i];
+    const std::string same = document.at("context").at("suite").value("same", "");
+    const auto noise = pair_noise(points, same);
+    if (const std::string why = noise ? why_not_quotable(*noise) : ""; !why.empty()) {
+      journal.remove();
+      std::cerr << "bench: not added, '" << file << "' stays as it was: " << why << '\n';
+      return cannot_decide;
+    }
+    std::size_t i = 0, lost = 0;
+    for (auto& [row, point] : best) {
+      point = points[i++];
+      lost += point.samples.empty();
+    }
+    add(document, context, noise, best);
+    write_atomically(file, result_text(document));
+    journal.remove();
+    std::cout << file << ": occasion " << document["context"]["occasions"].size() + 1
+              << "; best points timed: " << best.size() - lost;
+    if (lost > 0) std::cout << "; that did not end well this time: " << lost;
+    const json scatter = document["context"]["scatter"];
+    if (scatter.is_number())
+      std::cout << "; a ratio of two times varies by "
+                << number_text(100 * scatter.get<double>(), 2)
+                << " % (standard deviation) between occasions";
+    std::cout << '\n';
+    return success;
+  }
+};
+
 }  // namespace
 
+Action repeat_verb(const Command& command) { return verb<RepeatCommand>(command); }
 Action sweep_verb(const Command& command) { return verb<SweepCommand>(command); }
 
 }  // namespace harness

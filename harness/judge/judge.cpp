@@ -60,7 +60,7 @@ void Judge::compare(const State& state) {
 // A run that ended before the last sure sample has no error: it would be one of fewer samples.
 void Judge::add_errors(Measures& measures) const {
   const ErrorAtLevel at = error_at(measures, headline_error);
-  measures.error_samples = at.samples;
+  measures.error_samples = static_cast<int>(at.samples);
   if (at.samples > 0) measures.error_until = at.until;
   const int wanted = options_.reference->samples_at(headline_error);
   const std::string level = number_text(100 * headline_error) + " %";

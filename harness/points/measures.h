@@ -33,6 +33,19 @@ struct ErrorSample {
   bool operator==(const ErrorSample&) const = default;
 };
 
+// The distance to the reference at a level: over the sample times at which 3 gap is at most the
+// level. These are the same for all runs, so that "within an error of 1 %" means one thing.
+struct ErrorAtLevel {
+  double level = any_motion;
+  double distance = unknown;  // largest root mean square over vertices; unknown without a sample
+  double mean = unknown;      // of these over time
+  double largest = unknown;   // of any vertex
+  double gap = unknown;       // the largest
+  double samples = 0;
+  double until = 0;  // s, the last sample
+  bool operator==(const ErrorAtLevel&) const = default;
+};
+
 // What each means: measure_fields.
 struct Measures {
   double max_strain = 0;
@@ -48,7 +61,8 @@ struct Measures {
   int error_samples = 0;
   double error_until = unknown;
   std::string unknown_because;
-  std::vector<ErrorSample> error_series;
+  std::vector<ErrorSample> error_series;  // of a run; files have error_levels instead
+  std::vector<ErrorAtLevel> error_levels;
   double moved = unknown;
   double valid_until = unknown;
   std::vector<ResidualSample> residuals;
@@ -99,8 +113,14 @@ inline constexpr std::tuple measure_fields{
           error_or_null),
     field("error_series", &Measures::error_series, "s, then scene's size",
           "at each sample: time, distance to the reference as root mean square and as maximum, gap "
-          "in both norms",
-          {.inside = "error"}),
+          "in both norms; in older files",
+          error_or_null),
+    field("error_levels", &Measures::error_levels, "scene's size",
+          "a level, which holds down to the next row's; then over the sample times at which 3 gap "
+          "is at most the level the distance to the reference as root mean square over vertices, "
+          "largest and mean, the largest of any vertex, the largest gap, the number of samples and "
+          "the time of the last one (s)",
+          error_or_null),
     field("moved", &Measures::moved, "",
           "distance from the start over the reference's, root mean square over vertices and "
           "samples; 0: it did not move",
@@ -119,18 +139,11 @@ inline constexpr std::tuple measure_fields{
           "mark vertices: 0 at rest",
           number_or_null)};
 
-// The distance to the reference at a level: over the sample times at which 3 gap is at most the
-// level. These are the same for all runs, so that "within an error of 1 %" means one thing.
-struct ErrorAtLevel {
-  double distance = unknown;  // largest root mean square over vertices; unknown without a sample
-  double mean = unknown;      // of these over time
-  double largest = unknown;   // of any vertex
-  double gap = unknown;       // the largest
-  int samples = 0;
-  double until = 0;  // s, the last sample
-};
-// Without a series its one figure stands for all levels.
+// From the series; without one from the levels, at one of answer_levels; without these, too, the
+// one figure stands for all levels.
 ErrorAtLevel error_at(const Measures& measures, double level);
+// The series at answer_levels, loose to tight; a level that is as the one before it is left out.
+std::vector<ErrorAtLevel> levels_of_series(const Measures& measures);
 // Whether it is known to be at most the level; any_motion: always.
 bool within_error(const Measures& measures, double level);
 // The same, or that nothing is known at the level.

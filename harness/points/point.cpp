@@ -10,11 +10,16 @@ std::string PointSpec::id() const {
 }
 
 ErrorAtLevel error_at(const Measures& measures, double level) {
-  ErrorAtLevel at;
+  ErrorAtLevel at{.level = level};
   if (measures.error_series.empty()) {
-    if (!(measures.trajectory >= 0) || sure_gaps * measures.gap > level) return at;
-    return {measures.trajectory, measures.trajectory_mean, measures.trajectory_max, measures.gap, 1,
-            measures.valid_until};
+    for (const ErrorAtLevel& known : measures.error_levels)
+      if (known.level >= level) at = known;  // loose to tight
+    if (!measures.error_levels.empty() || !(measures.trajectory >= 0) ||
+        sure_gaps * measures.gap > level)
+      return at;
+    return {
+        level, measures.trajectory, measures.trajectory_mean, measures.trajectory_max, measures.gap,
+        1,     measures.valid_until};
   }
   double sum = 0;
   const auto raise = [](double& largest, double value) {
@@ -33,6 +38,16 @@ ErrorAtLevel error_at(const Measures& measures, double level) {
   return at;
 }
 
+std::vector<ErrorAtLevel> levels_of_series(const Measures& measures) {
+  std::vector<ErrorAtLevel> levels;
+  if (measures.error_series.empty()) return measures.error_levels;
+  for (const double level : answer_levels) {
+    const ErrorAtLevel at = error_at(measures, level);
+    if (levels.empty() || levels.back().samples != at.samples) levels.push_back(at);
+  }
+  return levels;
+}
+
 bool within_error(const Measures& measures, double level) {
   return level == any_motion || error_at(measures, level).distance <= level;
 }
@@ -42,6 +57,12 @@ bool within_known_error(const Measures& measures, double level) {
 }
 
 double PointResult::seconds() const { return time_of(samples); }
+std::map<int, double> PointResult::times() const {
+  std::map<int, double> times;
+  if (!samples.empty()) times[0] = seconds();
+  for (const OccasionTime& at : occasions) times[static_cast<int>(at.occasion)] = at.least;
+  return times;
+}
 double PointResult::measured_seconds() const {
   double sum = 0;
   for (std::size_t i = 0; i < samples.size(); ++i)

@@ -110,6 +110,13 @@ struct Samples {
   std::vector<FrameTime> frame_times = {};  // of a run of the fastest sample
 };
 
+// Times of a point that were taken on another occasion: hours later, or on another machine.
+struct OccasionTime {
+  double occasion;       // from 1 on: its place in the file's context.occasions
+  double least, median;  // wall seconds per simulated second, of its samples
+  bool operator==(const OccasionTime&) const = default;
+};
+
 // How one run went, beside its times.
 struct RunOutcome {
   PointStatus status = PointStatus::ok;
@@ -143,9 +150,12 @@ struct PointResult : Samples, RunOutcome {
   std::vector<double> best_at_errors;  // levels of error that it is the fastest within
   // For a best point: "coarsest" or "finest" where a step beyond the ladder might be better still.
   std::string at_ladder_end;
+  std::vector<OccasionTime> occasions;  // that came after the one of its samples
 
   bool ok() const { return status == PointStatus::ok; }
-  double seconds() const;           // the point's time: of its samples, by time_of()
+  double seconds() const;  // the point's time: of its samples, by time_of()
+  // By occasion, from 0: that of its samples. Empty: it was not timed.
+  std::map<int, double> times() const;
   double measured_seconds() const;  // s that the runs of all samples took together
 };
 

@@ -79,9 +79,18 @@ struct FieldCodec<std::vector<ErrorSample>>
     : RowsCodec<ErrorSample, &ErrorSample::time, &ErrorSample::error, &ErrorSample::worst,
                 &ErrorSample::gap, &ErrorSample::worst_gap> {};
 template <>
+struct FieldCodec<std::vector<ErrorAtLevel>>
+    : RowsCodec<ErrorAtLevel, &ErrorAtLevel::level, &ErrorAtLevel::distance, &ErrorAtLevel::mean,
+                &ErrorAtLevel::largest, &ErrorAtLevel::gap, &ErrorAtLevel::samples,
+                &ErrorAtLevel::until> {};
+template <>
 struct FieldCodec<std::vector<FrameTime>>
     : RowsCodec<FrameTime, &FrameTime::rate, &FrameTime::median, &FrameTime::slow,
                 &FrameTime::worst> {};
+template <>
+struct FieldCodec<std::vector<OccasionTime>>
+    : RowsCodec<OccasionTime, &OccasionTime::occasion, &OccasionTime::least,
+                &OccasionTime::median> {};
 
 // What is run: two runs that agree in these may stand for each other.
 inline constexpr std::tuple spec_fields{
@@ -136,7 +145,11 @@ inline constexpr std::tuple result_fields{
     field("best_at_errors", &PointResult::best_at_errors, "scene's size",
           "levels of error within which it is the fastest step of its contestant at its place"),
     field("at_ladder_end", &PointResult::at_ladder_end, "",
-          "of a best point: 'coarsest' or 'finest' where its step is that end of the ladder")};
+          "of a best point: 'coarsest' or 'finest' where its step is that end of the ladder"),
+    field("occasions", &PointResult::occasions, "wall seconds per simulated second",
+          "taken hours later or on another machine: the occasion's place in context.occasions, "
+          "from 1, then the least and the median of its samples",
+          {.nullable = true})};
 
 inline constexpr FieldTraits in_phases{.inside = "phases"};
 inline constexpr std::tuple phase_fields{

@@ -12,6 +12,12 @@ namespace {
 
 using Pointer = json::json_pointer;
 
+// Measured numbers to six digits, which is more than repeats.
+void round_all(json& value) {
+  if (value.is_number_float()) value = rounded_to(value.get<double>());
+  if (value.is_structured()) std::ranges::for_each(value, round_all);
+}
+
 // One entry a repetition, in Google Benchmark's own format; compare.py reads them.
 void add_benchmarks(json& list, const PointResult& point, int family) {
   for (std::size_t i = 0; i < point.samples.size(); ++i) {
@@ -107,7 +113,7 @@ std::string impossible(const json& point) {
   const auto [least, most] = std::ranges::minmax(samples);
   if (!(least > 0)) return "has a time that is not positive";
   const auto fits = [&, scale = most](const char* key, double value) {
-    return std::abs(number(times, key) - value) <= 1e-6 * scale;
+    return std::abs(number(times, key) - value) <= 2 * (rounding - 1) * scale;
   };
   if (!fits("min", least) || !fits("median", quantile(samples, 0.5)) ||
       !fits("q1", quantile(samples, 0.25)) || !fits("q3", quantile(samples, 0.75)))
@@ -129,6 +135,19 @@ void check_points(const json& document, const std::string& path) {
 
 }  // namespace
 
+json row_of(PointResult point) {
+  point.measures.error_levels = levels_of_series(point.measures);
+  point.measures.error_series.clear();
+  json row = to_json(point);
+  for (const char* measured :
+       {"seconds_per_simulated_second", "filter_seconds_per_simulated_second",
+        "cpu_seconds_per_simulated_second", "frame_times", "occasions", "phases", "error", "sag",
+        "p99_strain", "rms_strain", "max_strain_after_collision", "kinetic_energy_mean",
+        "rest_speed", "setup_seconds"})
+    round_all(row.at(measured));
+  return row;
+}
+
 json result_document(json context, const Suite& suite, const std::vector<std::string>& command,
                      bool complete, const std::vector<PointResult>& points, json references) {
   context["command"] = command;
@@ -144,8 +163,8 @@ json result_document(json context, const Suite& suite, const std::vector<std::st
   for (const PointResult& point : points) {
     samples += point.samples.size();
     retaken += point.retaken;
-    list.push_back(to_json(point));
-    if (point.ok()) add_benchmarks(benchmarks, point, family++);
+    list.push_back(row_of(point));
+    if (counts(point)) add_benchmarks(benchmarks, point, family++);
   }
   context["retaken_samples"] = {{"samples", samples}, {"retaken", retaken}};
   json document = {{"schema", "inextensible-bench/1"},
@@ -155,12 +174,16 @@ json result_document(json context, const Suite& suite, const std::vector<std::st
                    {"points", list},
                    {"references", std::move(references)},
                    {"benchmarks", benchmarks}};
-  constexpr double quotable = 0.06;  // most noise of a result to be quoted
-  if (noise && noise->q95 > quotable)
-    document["warning"] = "noisy: equal programs differ by " +
-                          number_text(100 * std::expm1(noise->q95), 2) +
-                          " % here, more than the 6 % that a result to be quoted may have";
+  if (const std::string why = noise ? why_not_quotable(*noise) : ""; !why.empty())
+    document["warning"] = "noisy: " + why;
   return document;
+}
+
+std::string why_not_quotable(const PairNoise& noise) {
+  if (noise.q95 <= quotable_noise) return "";
+  return concat("equal programs differ by ", number_text(100 * std::expm1(noise.q95), 2),
+                " % here, more than the ", 100 * quotable_noise,
+                " % that a result to be quoted may have");
 }
 
 std::string result_text(const json& document) {
@@ -243,7 +266,7 @@ json joined(const std::vector<json>& documents) {
   const bool sweep = all.contains("points");
   const char* rows = sweep ? "points" : "matrix";
   const Pointer q95("/context/noise/q95"), again("/context/noise/pair/1"),
-      legend("/legend/solvers");
+      legend("/legend/solvers"), between("/context/scatter");
   all.erase("benchmarks");
   all[rows] = json::array();
   double noise = std::nan("");
@@ -251,11 +274,13 @@ json joined(const std::vector<json>& documents) {
   for (const json& document : documents) {
     if (document.value("schema", "") != all.value("schema", ""))
       throw UsageError("results of different kinds of sweeps cannot be combined into one table");
-    const json own = document.value(q95, json());
+    const json own = document.value(q95, json()), scatter = document.value(between, json());
     const std::size_t before = all[rows].size();
     add_rows(all[rows], document.at(rows), document.value(again, json()), taken);
-    for (std::size_t i = before; own.is_number() && i < all[rows].size(); ++i)
-      all[rows][i]["noise"] = own;
+    for (std::size_t i = before; i < all[rows].size(); ++i) {
+      if (own.is_number()) all[rows][i]["noise"] = own;
+      if (scatter.is_number()) all[rows][i]["scatter"] = scatter;
+    }
     if (document.contains(legend)) add_named(all[legend], document.at(legend));
     if (document.contains("references")) add_named(all["references"], document.at("references"));
     if (own.is_number()) noise = std::fmax(noise, own.get<double>());

@@ -5,11 +5,22 @@
 
 namespace harness {
 
+struct PairNoise;
+
+// A point as a file has it: measured numbers have six digits, and errors no series. What decides
+// what is run, and from where on, stays exact.
+json row_of(PointResult point);
+
 // context: machine_context() as it was before the sweep ran. references:
 // ReferenceFolder::summaries().
 json result_document(json context, const Suite& suite, const std::vector<std::string>& command,
                      bool complete, const std::vector<PointResult>& points,
                      json references = json::array());
+
+// The most noise (PairNoise::q95) of a result, or of an occasion, that may be quoted.
+constexpr double quotable_noise = 0.06;
+// "equal programs differ by 7.1 % here, more than the 6 % ..."; "" if it may be quoted.
+std::string why_not_quotable(const PairNoise& noise);
 
 // As it is written: one point a line.
 std::string result_text(const json& document);

@@ -109,25 +109,18 @@ struct Sweep {
   void repeat_candidates();
 };
 
-// Takes one sample of each candidate (in a step sweep: of each point that ran to the end) per
-// round, in a shuffled order, until each has enough.
-void Sweep::repeat_candidates() {
-  struct Repeated {
-    std::size_t point;
-    bool may_be_best;
-    int tries, least;  // samples
-  };
-  std::set<std::size_t> candidates;
-  for (const Choice& choice : choices)
-    for (const auto& [rung, place] : choice.candidates) candidates.insert(place);
-  std::vector<Repeated> round;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const bool may_be_best = candidates.contains(i);
-    if (points[i].spec.sweep == "step" ? points[i].ok() : may_be_best)
-      round.push_back({i, may_be_best, static_cast<int>(points[i].samples.size()),
-                       may_be_best ? suite.reps : std::min(suite.reps, other_reps)});
-  }
-  const auto enough = [this](const Repeated& one) {
+// A point of which more samples are to be taken.
+struct Repeated {
+  std::size_t point;
+  bool may_be_best;
+  int tries, least;  // samples
+};
+
+// One sample of each per round, in a shuffled order, until each has enough.
+void repeat_in_rounds(const Suite& suite, std::vector<Repeated> round,
+                      std::vector<PointResult>& points, const SweepEvents& events,
+                      const Runner& run) {
+  const auto enough = [&](const Repeated& one) {
     const PointResult& point = points[one.point];
     const double seconds = point.measured_seconds();
     if (seconds >= repeat_for) return true;
@@ -143,11 +136,27 @@ void Sweep::repeat_candidates() {
       all += static_cast<std::size_t>(std::max(1, one.least - one.tries));
     std::ranges::shuffle(round, random);
     for (Repeated& one : round) {
-      repeat(points[one.point]);
+      add_sample(points[one.point], run,
+                 {.timeout = suite.timeout, .interrupted = events.interrupted});
       ++one.tries;
       events.repetition(++done, all);
     }
   }
+}
+
+// Candidates, and in a step sweep every point that ran to the end.
+void Sweep::repeat_candidates() {
+  std::set<std::size_t> candidates;
+  for (const Choice& choice : choices)
+    for (const auto& [rung, place] : choice.candidates) candidates.insert(place);
+  std::vector<Repeated> round;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const bool may_be_best = candidates.contains(i);
+    if (points[i].spec.sweep == "step" ? points[i].ok() : may_be_best)
+      round.push_back({i, may_be_best, static_cast<int>(points[i].samples.size()),
+                       may_be_best ? suite.reps : std::min(suite.reps, other_reps)});
+  }
+  repeat_in_rounds(suite, std::move(round), points, events, run);
 }
 
 void Sweep::find_best(std::size_t number, Neighbour& neighbour) {
@@ -226,6 +235,23 @@ SweepOutcome run_sweep(const Suite& suite, const std::vector<Search>& searches,
   }
   choose(sweep.choices, outcome.points);
   return outcome;
+}
+
+std::vector<Samples> time_again(const Suite& suite, const std::vector<PointResult>& points,
+                                const SweepEvents& events, const Runner& run) {
+  std::vector<PointResult> again;
+  std::vector<Repeated> round;
+  for (const PointResult& point : points) {
+    PointResult more(point);
+    static_cast<Samples&>(more) =
+        run(point.spec,
+            {.timeout = suite.timeout, .interrupted = events.interrupted, .sample_of = &point});
+    if (!more.samples.empty()) round.push_back({again.size(), true, 1, suite.reps});
+    again.push_back(std::move(more));
+    events.point(again.back(), again.size() - 1, points.size());
+  }
+  repeat_in_rounds(suite, std::move(round), again, events, run);
+  return {again.begin(), again.end()};
 }
 
 }  // namespace harness

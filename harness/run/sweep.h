@@ -55,4 +55,10 @@ struct SweepOutcome {
 SweepOutcome run_sweep(const Suite& suite, const std::vector<Search>& searches,
                        const SweepEvents& events, const Runner& run = run_point);
 
+// Samples of these points on another occasion, in a shuffled order; as many of each as a sweep
+// takes of a point that may be best, none of one that no longer runs to its end. Throws
+// Interrupted.
+std::vector<Samples> time_again(const Suite& suite, const std::vector<PointResult>& points,
+                                const SweepEvents& events, const Runner& run);
+
 }  // namespace harness

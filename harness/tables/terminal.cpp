@@ -205,6 +205,8 @@ void print_sweep(std::ostream& out, const json& document, const std::string& fil
   print_failures(out, runs, all);
   print_plugins(out, runs, document.at("context").value("plugins", json::array()));
   print_noise(out, document);
+  if (const std::string words = text(coverage_of(runs)); !words.empty())
+    out << '\n' << words << '\n';
   if (!all)
     out << "\nall contestants: bench show " << file << " --all; a page with figures: bench report "
         << file << " --out report.html\n";

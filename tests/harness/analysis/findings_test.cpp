@@ -52,6 +52,31 @@ TEST(Plane, HasTheFastestRunOfEachCell) {
             "none: no run that was tried has a motion error of at most 2 %");
 }
 
+// Ahead on the first day by what is little between days.
+TEST(Plane, LeaderIsClearOnlyWhereItLeadsOnEveryOccasion) {
+  const auto result = [](double third_day) {
+    json all = document({run("icd", 0.1, 0.01, 1, 0.01, true, {0.02}),
+                         run("shake", 0.1, 0.01, 1.2, 0.01, true, {0.02})});
+    all["context"]["scatter"] = 0.01;
+    all["points"][0]["occasions"] = {{1, 1.0, 1.0}, {2, third_day, third_day}};
+    all["points"][1]["occasions"] = {{1, 1.2, 1.2}, {2, 1.2, 1.2}};
+    return all;
+  };
+  for (const auto& [third_day, clear] : {std::pair(1.0, true), {1.17, false}, {1.3, false}}) {
+    const json all = result(third_day);
+    const auto planes = planes_of(all);
+    const Cell& cell = planes.at(0).cell(0.1, 0.02);
+    EXPECT_EQ(cell.clear(), clear) << third_day;
+    const Ratio lead = *cell.lead_over(cell.counting(1));
+    EXPECT_NEAR(lead.value, 1.2 / std::cbrt(third_day), 1e-12) << "mean of the days";
+    EXPECT_TRUE(lead.low <= 1.2 / third_day && lead.high >= 1.2);
+    const Coverage coverage = coverage_of(all);
+    EXPECT_EQ(coverage.occasions, 3);
+    EXPECT_EQ(coverage.ratios, 3) << "one pair, each day against the others";
+    EXPECT_EQ(coverage.outside > 0, third_day > 1) << third_day;
+  }
+}
+
 TEST(Plane, TakesTheRunThatTheSweepMarked) {
   const json result =
       document({run("icd", 0.1, 0.04, 1, 0.015), run("icd", 0.1, 0.02, 1.1, 0.01, true, {0.02}),

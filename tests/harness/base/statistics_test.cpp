@@ -57,6 +57,45 @@ TEST(Ratio, IntervalHasItsCoverageWhateverTheDistribution) {
   }
 }
 
+TEST(Ratio, IntervalOfOccasionsHoldsAFurtherOne) {
+  std::mt19937 random = seeded();
+  std::normal_distribution<double> unit;
+  // Pairs of programs differ in how much a day changes their ratio.
+  const auto ratio_of_pair = [&](double spread) { return 1.3 * std::exp(spread * unit(random)); };
+  for (const std::size_t days : {2u, 3u, 5u}) {
+    const int trials = inextensible::testing::trials(20000);
+    int inside = 0;
+    for (int i = 0; i < trials; ++i) {
+      const double spread = 0.04 * std::exp(0.3 * unit(random));
+      const Samples ratios = draw(days, [&] { return ratio_of_pair(spread); });
+      const Ratio ratio = ratio_on_another_day(ratios, 0.04);
+      for (const double seen : ratios) EXPECT_TRUE(ratio.low <= seen && seen <= ratio.high);
+      const double then = ratio_of_pair(spread);
+      inside += ratio.low <= then && then <= ratio.high ? 1 : 0;
+    }
+    // It holds what was seen, too, which makes it wider.
+    EXPECT_NEAR(static_cast<double>(inside) / trials, 0.96, 0.02) << days;
+  }
+  EXPECT_FALSE(ratio_on_another_day({1.3}, 0.04).known());
+  EXPECT_GE(ratio_on_another_day({1.3, 1.3}, 0.001, 0.5).high, 1.3 * std::exp(0.5));
+}
+
+TEST(Ratio, ScatterIsThatBetweenOccasionsWhateverOneSlowsDown) {
+  std::mt19937 random = seeded();
+  std::normal_distribution<double> unit;
+  const double slower[] = {1, 1.4, 0.7};  // on each day, all programs
+  std::vector<Samples> times;
+  for (int program = 0; program < 400; ++program) {
+    const double own = std::exp(3 * unit(random));
+    Samples& of = times.emplace_back();
+    for (const double day : slower) of.push_back(own * day * std::exp(0.05 * unit(random)));
+  }
+  EXPECT_NEAR(scatter_of(times), 0.05 * std::sqrt(2), 0.004);
+  times.push_back({100, 1});  // was not timed on the third
+  EXPECT_NEAR(scatter_of(times), 0.05 * std::sqrt(2), 0.004);
+  EXPECT_TRUE(std::isnan(scatter_of({{1, 2}})) && std::isnan(scatter_of({{1}, {2}})));
+}
+
 TEST(Ratio, IntervalMatchesTheTablesOfTheTest) {
   // Where no pair of samples ties, the interval leaves out the c - 1 least and largest quotients;
   // Hollander and Wolfe's table of the two-sided 5 % test has c = 18 for 9 and 9, 3 for 5 and 5.

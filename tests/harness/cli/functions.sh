@@ -1,5 +1,6 @@
-# Sourced first by the tests of the finished program, each in a folder of its own.
-rm -rf -- ./*  # left by the last run
+# Sourced first by the tests of the finished program, each in a folder of its own in the current one.
+scratch=$(basename "$0").scratch
+rm -rf -- "$scratch" && mkdir "$scratch" && cd "$scratch" || exit
 set -u
 failures=0
 

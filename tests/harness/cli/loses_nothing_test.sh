@@ -98,6 +98,25 @@ cmp -s other.json.journal kept || fail "a refused journal was touched"
 ./other_bench "${sweep[@]}" --resume --force --out other.json >/dev/null 2>&1 || fail "--resume --force: exit $?"
 same whole.json other.json || fail "resumed by another build"
 
+# ---- Another occasion: best points alone, added to the file, or nothing ----
+cp whole.json again.json
+bench repeat again.json --no-wait >/dev/null 2>&1 || fail "repeat: exit $?"
+holds '
+was, now = read("whole.json")["points"], read("again.json")["points"]
+assert len(read("again.json")["context"]["occasions"]) == 1
+for p, q in zip(was, now):
+    assert bool(q.pop("occasions")) == (p["status"] == "ok" and (p["best"] or bool(p["best_at_errors"]))), q["id"]
+    assert p.pop("occasions") == [] and p == q, q["id"]'
+python3 -c 'import json; d = json.load(open("whole.json")); d["complete"] = False; json.dump(d, open("part.json", "w"))'
+refused "no complete, timed result" repeat part.json
+cp again.json before.json
+"$BENCH_BINARY" repeat again.json --no-wait >/dev/null 2>&1 &
+while kill -0 "$!" && ! [[ -e again.json.journal && $(wc -l <again.json.journal) -ge 3 ]]; do sleep 0.01; done
+kill -INT "$!" && wait "$!"
+[[ $? == 130 ]] && cmp -s again.json before.json || fail "an interrupted repetition touched its file"
+bench repeat again.json --no-wait >/dev/null 2>&1 || fail "repetition that goes on: exit $?"
+holds 'assert len(read("again.json")["context"]["occasions"]) == 2'
+
 # ---- The folder goes ----
 mkdir gone
 hold gone/result.json 5

@@ -167,6 +167,10 @@ class Random {
   }
   void fill(FrameTime& at, bool) { fill_each(at.rate, at.median, at.slow, at.worst); }
   void fill(ErrorSample& at, bool) { fill_each(at.time, at.error, at.worst, at.gap, at.worst_gap); }
+  void fill(OccasionTime& at, bool) { fill_each(at.occasion, at.least, at.median); }
+  void fill(ErrorAtLevel& at, bool) {
+    fill_each(at.level, at.distance, at.mean, at.largest, at.gap, at.samples, at.until);
+  }
   void fill(ResidualSample& at, bool) { fill_each(at.time, at.first, at.last); }
   template <class... Values>
   void fill_each(Values&... values) {

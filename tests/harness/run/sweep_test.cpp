@@ -198,6 +198,27 @@ TEST(ErrorLevels, EachHasItsFastestStepBesideTheOneOfAnyMotion) {
   EXPECT_EQ(machine.specs.size(), outcome.points.size()) << "no step is run for each level again";
 }
 
+TEST(TimesAgain, AreThoseOfTheOtherOccasionAlone) {
+  FakeMachine machine{.seconds = parabola(200)};
+  const Suite suite = suite_of_chain({0.1, 0.01});
+  std::vector<PointResult> best;
+  for (const PointResult& point : sweep(suite, machine).points)
+    if (point.best) best.push_back(point);
+  ASSERT_EQ(best.size(), 2u);
+  int runs = 0;
+  const Runner slower = [&](const PointSpec& spec, const RunLimits& limits) {
+    EXPECT_TRUE(limits.sample_of) << "nothing is judged again";
+    PointResult more(spec);
+    if (++runs != 1) more.samples = {3 * limits.sample_of->samples.front()};  // 1: it failed
+    return more;
+  };
+  const auto again = time_again(suite, best, {}, slower);
+  ASSERT_EQ(again.size(), 2u);
+  EXPECT_TRUE(again[0].samples.empty());
+  EXPECT_EQ(again[1].samples.size(), static_cast<std::size_t>(suite.reps));
+  EXPECT_DOUBLE_EQ(again[1].samples.front(), 3 * best[1].samples.front());
+}
+
 TEST(ErrorLevels, AnErrorThatIsNotKnownIsNoErrorWithinALevel) {
   FakeMachine machine{.seconds = parabola(200), .error = error_of_step(std::nan(""))};
   for (const auto& point : sweep(suite_of_chain({0.1}), machine).points)
