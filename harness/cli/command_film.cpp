@@ -11,8 +11,6 @@ namespace harness {
 namespace {
 
 constexpr int default_width = 480;
-// Rays a pixel in each direction: a film has hundreds of pictures, so it gets fewer than a still.
-constexpr int still_samples = 6, film_samples = 3;
 
 using analysis::percent;
 
@@ -125,8 +123,7 @@ struct Film : SceneOptions {
     const TemporaryFolder folder("film");
     Progress progress;
     write_pictures(
-        folder.path(), recording,
-        {frames, width > 0 ? width : default_width, still ? still_samples : film_samples},
+        folder.path(), recording, {frames, width > 0 ? width : default_width, still},
         [&progress](std::size_t done, std::size_t all) { progress.show(done, all, "pictures"); });
     progress.clear();
     return draw("film.py", {folder.path()}, out);
@@ -143,6 +140,7 @@ struct Film : SceneOptions {
     const bool still = ending == ".png";
     const auto frames = shown_frames(still);  // before anything runs
     check_writable(out);
+    if (picture_endings.contains(ending)) check_povray();
     const Recording recording = recorded();
     print_times(recording);
     if (picture_endings.contains(ending)) return draw_pictures(recording, frames, still);
