@@ -45,100 +45,65 @@ std::string cell_text(const Cell& cell) {
   return text;
 }
 
-Table table_of(const std::vector<Plane>& planes) {
-  const bool sizes = planes.front().sweep == "resolution";
-  Table table{{sizes ? "vertices" : "strain"}, {}, 0};
+// "1.7 (1.5-1.8) `icd`": a rival's time over the first's.
+std::string lead_text(const Cell& cell, Rival which) {
+  const Entry* other = cell.rival(which);
+  if (!other) return "-";
+  return other == cell.first() ? "itself"
+                               : analysis::text(*cell.lead_over(other)) + " " + quoted(other->row);
+}
+
+// Who is fastest at the headline's limit and error, and how much of that is stepper or method; then
+// at every limit and error.
+void print_planes(std::ostream& out, const std::vector<Plane>& planes) {
+  Table answers{
+      {"scene, vertices", "strain", "error", "known to", "fastest", "its method as published",
+       "next method in its stepper", "paper's six in any stepper"},
+      {},
+      0},
+      grid{{"scene, vertices, sweep", "strain"}, {}, 0};
   for (const double level : planes.front().levels)
-    table.head.push_back(level == any_motion ? "any motion" : "error <= " + percent(level));
+    grid.head.push_back(level == any_motion ? "any motion" : "error <= " + percent(level));
   for (const Plane& plane : planes) {
+    const std::string place = scene_words(plane.scene) + ", " + std::to_string(plane.vertices);
     for (const Cell& cell : plane.cells) {  // by limit, then by level
       if (cell.level == plane.levels.front())
-        table.rows.push_back({sizes ? std::to_string(plane.vertices) : percent(cell.strain_limit)});
-      table.rows.back().push_back(cell_text(cell));
+        grid.rows.push_back({place + ", " + plane.sweep, percent(cell.strain_limit)});
+      grid.rows.back().push_back(cell_text(cell));
     }
+    const Cell& cell = headline_of(plane);
+    if (!cell.first() || !is_largest(plane, planes)) continue;
+    answers.rows.push_back(
+        {place, percent(cell.strain_limit), cell.level == any_motion ? "any" : percent(cell.level),
+         cell.known_until > 0 ? number_text(cell.known_until) + " s" : "-", cell_text(cell)});
+    for (const Rival which :
+         {Rival::first_as_published, Rival::rival_in_stepper, Rival::paper_in_any_stepper})
+      answers.rows.back().push_back(lead_text(cell, which));
   }
-  return table;
+  print_table(out,
+              "## Who is fastest\n\nIn each cell the fastest: its time for one simulated second "
+              "and its step in s; then how many times as long the best of the paper's six takes, "
+              "if it is not of them. Bold: faster than each other one beyond the noise. `u`: with "
+              "untuned settings. Errors are over the scene's size, up to the time to which the "
+              "references agree. The last three columns say where the lead comes from, in times "
+              "the leader's time",
+              answers);
+  print_table(out, "### Within each strain and error", grid);
 }
 
-// Splits the lead at 1 % strain and the headline's error between stepper and method.
-void print_attribution(std::ostream& out, const Plane& plane) {
-  constexpr double limit = 0.01;
-  for (const Cell& cell : plane.cells) {
-    const Entry* first = cell.first();
-    if (cell.level != headline_error || cell.strain_limit != limit || !first) continue;
-    out << "Where the lead of " << quoted(first->row) << " at " << percent(limit)
-        << " comes from, in times its time: ";
-    for (const auto& [words, which] :
-         {std::pair("the same method as published ", Rival::first_as_published),
-          {"; the next method in the same stepper ", Rival::rival_in_stepper},
-          {"; the paper's best as published ", Rival::paper_best},
-          {", in any stepper ", Rival::paper_in_any_stepper}}) {
-      const Entry* other = cell.rival(which);
-      out << words
-          << (!other           ? "none in these results"
-              : other == first ? "itself"
-                               : analysis::text(*cell.lead_over(other)) + " " + quoted(other->row));
-    }
-    out << ". ";
-  }
-}
-
-// The slack in each method's least error at 1 %: what a limit of 0.1 % removes at the same step.
-void print_slack(std::ostream& out, const ContestantRoles& roles, const Plane& plane) {
-  constexpr double loose = 0.01, tight = 0.001;
-  const auto kept_limit = [](const Point& p, double limit) {
-    return p.ok() && p.strain_limit() == limit;
-  };
-  std::string text;
-  for (const auto& [name, own] : grouped(plane.points, &Point::contestant)) {
-    if (!roles.of(name).ranked()) continue;
-    double error = unknown, kept = unknown;
-    for (const Point& p : own) {
-      const auto tighter = std::ranges::find_if(
-          own, [&](const Point& q) { return q.step() == p.step() && kept_limit(q, tight); });
-      const double now = p.error_at(headline_error).distance;
-      if (kept_limit(p, loose) && tighter != own.end() && !(error < now)) {
-        error = now;
-        kept = tighter->error_at(headline_error).distance;
-      }
-    }
-    if (!(error > 0) || !std::isfinite(kept)) continue;
-    append(text, quoted(name) + " " + number_text(100 * error, 2) + " % (" +
-                     number_text(100 * std::max(0.0, 1 - kept / error), 2) + " %)");
-  }
-  if (!text.empty())
-    out << "The least error at " << percent(loose)
-        << ", and in brackets how much of it is slack, which a limit of " << percent(tight)
-        << " takes away at the same step: " << text << ". ";
-}
-
-void print_planes(std::ostream& out, const std::vector<json>& sweeps) {
-  if (sweeps.empty()) return;
-  const Runs runs(joined(sweeps));
-  std::vector<Plane> all = planes_of(runs);
-  // Steps of a scene and size that a sweep over strain has too are for figures.
-  const auto same_place = [](const Plane& a, const Plane& b) {
-    return a.scene == b.scene && a.vertices == b.vertices;
-  };
-  std::erase_if(all, [&, planes = all](const Plane& plane) {
-    return std::ranges::none_of(plane.cells, [](const Cell& cell) { return cell.counting(1); }) ||
-           (plane.sweep == "step" && std::ranges::any_of(planes, [&](const Plane& other) {
-              return other.sweep == "strain" && same_place(plane, other);
+// What the page's planes are of: of a scene and size that a sweep over strain has too, steps are
+// for figures.
+std::vector<Plane> shown_planes(const std::vector<json>& sweeps) {
+  const std::vector<Plane> planes = planes_of(Runs(joined(sweeps)));
+  std::vector<Plane> shown;
+  std::ranges::copy_if(planes, std::back_inserter(shown), [&](const Plane& plane) {
+    return std::ranges::any_of(plane.cells, [](const Cell& cell) { return cell.counting(1); }) &&
+           (plane.sweep != "step" || std::ranges::none_of(planes, [&](const Plane& other) {
+              return other.sweep == "strain" && other.scene == plane.scene &&
+                     other.vertices == plane.vertices;
             }));
   });
-  for (const auto& [title, planes] : grouped(all, title_of)) {
-    out << "### " << title << "\n\n";
-    for (const Finding& finding : findings_of(planes))
-      for (const std::string& sentence : finding.sentences) out << sentence << ' ';
-    out << span_of_errors(planes);
-    for (const Plane& plane : planes) {
-      if (plane.sweep == "strain") print_attribution(out, plane);
-      if (plane.scene == "settling_drape") print_slack(out, runs.roles, plane);
-    }
-    out << "\n\n";
-    print_markdown(out, table_of(planes));
-    out << '\n';
-  }
+  return shown;
 }
 
 // Further measurements of a scene, from the fastest run of each ranked contestant.
@@ -310,7 +275,7 @@ Table outcomes_in(const json& document) {
 }
 
 Table differences_in(const json& document) {
-  Table table{{"case", "solver", "expected", "ended", "why"}, {}, 2};
+  Table table{{"expected", "ended", "cases", "why"}, {}, 0};
   for (const json& cell : document.at("matrix")) {
     if (cell.at("as_expected")) continue;
     std::string reason = "not known: " + cell.at("detail").get<std::string>();
@@ -319,17 +284,17 @@ Table differences_in(const json& document) {
           known.at("solver") == cell.at("solver"))
         reason = known.at("reason").get<std::string>() +
                  "; would fix it: " + known.at("mends").get<std::string>();
-    const std::string fixed = cell.at("at_fixed_step"), outcome = cell.at("outcome");
-    std::vector<std::string> row{
-        cell.at("case"), cell.at("solver"), cell.at("expected_at_fixed_step"),
-        fixed == outcome ? fixed : fixed + ", with smaller steps " + outcome, reason};
-    const auto same = std::ranges::find_if(table.rows, [&row](const auto& other) {
-      return std::equal(row.begin() + 1, row.end(), other.begin() + 1);
+    const std::string fixed = cell.at("at_fixed_step"), outcome = cell.at("outcome"),
+                      expected = cell.at("expected_at_fixed_step"),
+                      ended = fixed == outcome ? fixed : fixed + ", with smaller steps " + outcome;
+    const auto same = std::ranges::find_if(table.rows, [&](const auto& row) {
+      return row[0] == expected && row[1] == ended && row[3] == reason;
     });
-    if (same == table.rows.end())
-      table.rows.push_back(std::move(row));
-    else
-      same->front() += ", " + row.front();  // a solver's cases that end alike share a row
+    auto& row = same == table.rows.end()
+                    ? table.rows.emplace_back(std::vector<std::string>{expected, ended, "", reason})
+                    : *same;
+    append(row[2],
+           cell.at("solver").get<std::string>() + " in " + cell.at("case").get<std::string>());
   }
   return table;
 }
@@ -345,13 +310,10 @@ void print_results_page(std::ostream& out, const std::vector<NamedResult>& resul
     if (!is_hard(result)) sweeps.push_back(result.document);
   }
 
+  if (const auto planes = shown_planes(sweeps); !planes.empty()) print_planes(out, planes);
   out << "## The paper's claims (`bench claims` gives each rule)\n\n";
   print_claims_markdown(out, judge_claims(documents));
-  out << "\n## Who is fastest, by strain and error\n\nIn each cell the fastest: its time for one "
-         "simulated second and its step in s; then how many times as long the best of the paper's "
-         "six takes, if it is not of them. Bold: faster than each other one beyond the noise. "
-         "`u`: with untuned settings. Errors are over the scene's size.\n\n";
-  print_planes(out, sweeps);
+  out << '\n';
   for (const SceneTable& about : scene_tables) {
     for (const NamedResult& result : results)
       if (!is_hard(result)) print_scene(out, result, about);
