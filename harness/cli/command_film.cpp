@@ -14,7 +14,7 @@ constexpr int default_width = 480;
 
 using analysis::percent;
 
-const std::set<std::string> picture_endings{".webp", ".mp4", ".png"}, mesh_endings{".obj", ".pc2"};
+const std::set<std::string> picture_endings{".webp", ".mp4", ".png"};
 
 std::string name_of(const FilmRun& run, const std::string& solver) {
   return solver + ", " + percent(run.strain_limit) + ", steps of " + step_text(run.step) + " s";
@@ -58,7 +58,7 @@ struct Film : SceneOptions {
     command.option("--width", width, "of each picture; default: 480", "PIXELS",
                    {.least = 16, .most = 4096, .whole = true});
     command.option("--out", out,
-                   ".webp or .mp4: a film; .png: stills; .obj, .pc2: for other programs; "
+                   ".webp or .mp4: a film; .png: stills; .obj: for other programs; "
                    "default: results/local/film-<scene>.webp, .png with --stills",
                    "FILE");
   }
@@ -96,13 +96,11 @@ struct Film : SceneOptions {
   }
 
   void check_format(const std::string& ending) const {
-    if (!picture_endings.contains(ending) && !mesh_endings.contains(ending))
-      throw UsageError("--out '" + out +
-                       "': must end in .webp, .mp4, .png (stills), .obj or .pc2 (Blender)");
+    if (!picture_endings.contains(ending) && ending != ".obj")
+      throw UsageError("--out '" + out + "': must end in .webp, .mp4, .png (stills) or .obj");
     if (!stills.empty() && ending != ".png")
       throw UsageError("--stills: --out '" + out + "' must end in .png");
-    if (width > 0 && mesh_endings.contains(ending))
-      throw UsageError("--width: '" + out + "' has no pictures");
+    if (width > 0 && ending == ".obj") throw UsageError("--width: '" + out + "' has no pictures");
   }
 
   // Impossible scene parameters, or a method that cannot run the scene, are the user's mistake.
@@ -149,7 +147,7 @@ struct Film : SceneOptions {
       const std::string own_part =
           recording.takes.size() == 1 ? "" : "-" + run.solver + "-" + number_text(run.strain_limit);
       for (const std::string& path :
-           write_run(recording, run, folder, place.stem().string() + own_part, ending))
+           write_meshes(recording, run, folder, place.stem().string() + own_part))
         std::cout << path << '\n';
     }
     return success;

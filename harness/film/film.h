@@ -50,7 +50,7 @@ struct PictureSpec {
   bool still = false;               // worth more rays a pixel than one of the hundreds of a film
 };
 
-// Throws FileError unless POV-Ray is installed.
+// Throws UsageError unless POV-Ray is installed.
 void check_povray();
 
 // Writes <take>-<frame>.png for each frame that a run has (or its last one) into a folder, using
@@ -58,13 +58,10 @@ void check_povray();
 void write_pictures(const std::string& folder, const Recording& recording, const PictureSpec& spec,
                     const std::function<void(std::size_t done, std::size_t all)>& told);
 
-// Writes a run into an existing folder and returns the paths to open. By the ending:
-//   .obj  Wavefront OBJ, one file a frame (<name>-0001.obj ...), faces for cloth, lines for chains;
-//         ParaView opens the files as a series
-//   .pc2  the first frame as OBJ, and a point cache for Blender's modifier "Mesh Cache"
-// A body has files of its own, <name>-body...: one if it does not move, else as many as the cloth.
-std::vector<std::string> write_run(const Recording& recording, const FilmRun& take,
-                                   const std::string& folder, const std::string& name,
-                                   const std::string& ending);
+// Writes a run into an existing folder as Wavefront OBJ and returns the paths: <name>-0001.obj and
+// so on, a file a frame, with faces for cloth and lines for chains. A body has files of its own,
+// <name>-body...: one if it does not move, else as many as the cloth.
+std::vector<std::string> write_meshes(const Recording& recording, const FilmRun& take,
+                                      const std::string& folder, const std::string& name);
 
 }  // namespace harness

@@ -185,13 +185,14 @@ void write_camera_and_lights(std::ostream& out, const View& view, const Vector3d
                  key = (-0.5 * view.right + 1.1 * up + 0.75 * view.towards).normalized(),
                  across = key.cross(view.towards).normalized(), along = key.cross(across);
   out << "#version 3.7;global_settings{assumed_gamma 1}background{srgb<0.97,0.97,0.98>}\n"
-      << "#declare F=finish{ambient 0.08 diffuse 1 specular 0.04 roughness 0.02}\n"
+      << "#declare F=finish{ambient 0.16 diffuse 1 specular 0.04 roughness 0.02}\n"
       << "camera{location" << vectors(eye) << "direction" << vectors(-view.towards) << "right"
       << vectors(2 * view.tangent * view.right) << "up"
       << vectors(2 * view.tangent * view.aspect * view.up) << "}\nlight_source{"
       << vectors(far * key) << "rgb 0.72 area_light" << vectors(far * size * across) << ','
-      << vectors(far * size * along) << ",2,2 jitter}\nlight_source{" << vectors(far * up)
-      << "rgb 0.25 shadowless}\nlight_source{" << vectors(eye) << "rgb 0.12 shadowless}\n";
+      << vectors(far * size * along) << ",3,3 adaptive 0 jitter}\nlight_source{"
+      << vectors(far * up) << "rgb 0.3 shadowless}\nlight_source{" << vectors(eye)
+      << "rgb 0.12 shadowless}\n";
 }
 
 // Cloth is drawn as triangles and yarns, a chain as a rope with knots.
@@ -213,10 +214,13 @@ std::string povray_scene(const Recording& recording, const View& view, const Fil
   const bool rope = scene.triangles.empty();
   const double radius = rope ? std::max(1.2 * pixel, std::min(0.009 * half, 0.25 * edge))
                              : std::clamp(0.05 * edge, 0.4 * pixel, 0.9 * pixel);
-  const double shade = rope ? 1 : 1 - 0.3 * std::min(1.0, edge / (line_spacing * pixel));
+  // A line hides this much of what is behind it: the closer lines are, the fainter they are.
+  const double shade = 0.35 * std::min(1.0, edge / (line_spacing * pixel));
 
   std::ostringstream out;
   write_camera_and_lights(out, view, eye, far);
+  out << "#declare Line=texture{pigment{rgb 0 transmit " << 1 - shade
+      << "}finish{ambient 0 diffuse 0}}\n";
   std::vector<double> strains, most(static_cast<std::size_t>(x.cols()), 0);
   append_strains(*scene.problem, run.frames[frame], strains);
   for (std::size_t k = 0; k < strains.size(); ++k) {
@@ -224,8 +228,8 @@ std::string povray_scene(const Recording& recording, const View& view, const Fil
     for (const int end : {a, b}) most[end] = std::max(most[end], strains[k]);
     if ((x.col(a) - x.col(b)).norm() < 1e-6 * half) continue;  // POV-Ray refuses it
     out << "cylinder{" << vectors(x(Eigen::all, {a, b})) << ',' << radius
-        << (rope ? "" : " no_shadow")
-        << plain(shade * strain_colour(strains[k] / run.strain_limit));
+        << (rope ? plain(strain_colour(strains[k] / run.strain_limit))
+                 : " texture{Line}no_shadow}\n");
   }
   for (Eigen::Index v = 0; rope && v < x.cols(); ++v)
     out << "sphere{" << vectors(x.col(v)) << ',' << 1.8 * radius
@@ -254,7 +258,7 @@ std::string traced(const std::string& scene, int width, int height, bool still) 
   // Input from a file and output to none: POV-Ray may be forbidden to read or write others.
   const ProgramResult ran =
       run_program({povray, "+I/dev/stdin", "+O-", "+FN", concat("+W", width), concat("+H", height),
-                   "+WT1", "+AM1", still ? "+A0.1" : "+A0.3", "+R3", "-J", "-D", "-V", "-GA"},
+                   "+WT1", "+AM1", still ? "+A0.15" : "+A0.3", "+R3", "-J", "-D", "-V", "-GA"},
                   std::numeric_limits<double>::infinity(), scene);
   if (ran.exit_code != 0)
     throw FileError("the scene", "trace", povray + (": " + ran.last_error_line()));
@@ -265,8 +269,7 @@ std::string traced(const std::string& scene, int width, int height, bool still) 
 
 void check_povray() {
   if (run_program({povray, "--version"}, std::numeric_limits<double>::infinity()).exit_code != 0)
-    throw FileError(povray, "run",
-                    "pictures need it (Debian: apt-get install povray); .obj does not");
+    throw UsageError("pictures need POV-Ray (Debian: apt-get install povray); .obj does not");
 }
 
 void write_pictures(const std::string& folder, const Recording& recording, const PictureSpec& spec,
