@@ -88,7 +88,9 @@ void print_planes(std::ostream& out, const std::vector<Plane>& planes) {
               "references agree. The last three columns say where the lead comes from, in times "
               "the leader's time",
               answers);
-  print_table(out, "### Within each strain and error", grid);
+  out << "### Fastest within each strain and error\n\n";
+  print_markdown(out, grid);
+  out << '\n';
 }
 
 // What the page's planes are of: of a scene and size that a sweep over strain has too, steps are
@@ -275,7 +277,7 @@ Table outcomes_in(const json& document) {
 }
 
 Table differences_in(const json& document) {
-  Table table{{"expected", "ended", "cases", "why"}, {}, 0};
+  std::map<std::string, std::map<std::string, std::string>> places;  // by reason, then by ending
   for (const json& cell : document.at("matrix")) {
     if (cell.at("as_expected")) continue;
     std::string reason = "not known: " + cell.at("detail").get<std::string>();
@@ -286,15 +288,16 @@ Table differences_in(const json& document) {
                  "; would fix it: " + known.at("mends").get<std::string>();
     const std::string fixed = cell.at("at_fixed_step"), outcome = cell.at("outcome"),
                       expected = cell.at("expected_at_fixed_step"),
-                      ended = fixed == outcome ? fixed : fixed + ", with smaller steps " + outcome;
-    const auto same = std::ranges::find_if(table.rows, [&](const auto& row) {
-      return row[0] == expected && row[1] == ended && row[3] == reason;
-    });
-    auto& row = same == table.rows.end()
-                    ? table.rows.emplace_back(std::vector<std::string>{expected, ended, "", reason})
-                    : *same;
-    append(row[2],
-           cell.at("solver").get<std::string>() + " in " + cell.at("case").get<std::string>());
+                      ending = expected + " -> " + fixed +
+                               (fixed == outcome ? "" : ", with smaller steps " + outcome),
+                      solver = cell.at("solver"), name = cell.at("case");
+    append(places[reason][ending], solver + " in " + name);
+  }
+  Table table{{"why", "expected -> ended: solver in case"}, {}, 0};
+  for (const auto& [reason, endings] : places) {
+    table.rows.push_back({reason, ""});
+    for (const auto& [ending, list] : endings)
+      append(table.rows.back()[1], concat(ending, ": ", list), "; ");
   }
   return table;
 }

@@ -216,10 +216,8 @@ void print_outcomes(std::ostream& out, const json& document) {
   out << counts.at("cells") << " hard cases and solvers, " << counts.at("new_differences")
       << " with a new difference; how they ended:\n";
   print_aligned(out, outcomes_in(document));
-  if (!differences.rows.empty()) {
-    out << "\nnot as expected:\n";
-    print_aligned(out, differences);
-  }
+  if (!differences.rows.empty()) out << "\nnot as expected (expected -> ended):\n";
+  for (const auto& row : differences.rows) out << row[1] << "\n    " << row[0] << '\n';
   if (steps.empty()) return;
   const auto scene_of = [](const json& entry) { return entry.at("scene").get<std::string>(); };
   const auto solver_of = [](const json& entry) { return entry.at("solver").get<std::string>(); };
