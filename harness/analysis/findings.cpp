@@ -138,22 +138,6 @@ std::string title_of(const Plane& plane) {
                    " vertices, over " + plane.sweep;
 }
 
-std::string span_of_errors(const std::vector<Plane>& planes) {
-  double first = std::numeric_limits<double>::infinity(), last = 0, duration = 0;
-  for (const Plane& plane : planes) {
-    for (const Cell& cell : plane.cells) {
-      if (cell.level != headline_error || !cell.first() || cell.known_until == 0) continue;
-      first = std::min(first, cell.known_until);
-      last = std::max(last, cell.known_until);
-      duration = std::max(duration, cell.first()->point.duration());
-    }
-  }
-  if (last == 0 || first > duration * (1 - 1e-9)) return "";
-  return concat("Errors of ", percent(headline_error), " are known up to ",
-                first < last ? number_text(first) + " or " : "", last, " s of ", duration,
-                " s: later the scene's references differ too much. ");
-}
-
 // ---- As JSON ----
 
 static json ratio_json(const std::optional<Ratio>& ratio) {

@@ -92,8 +92,6 @@ std::vector<Finding> findings_of(const std::vector<Plane>& planes);
 
 // "chain, 80 vertices, over strain". Planes of one title, as of a resolution sweep, share a table.
 std::string title_of(const Plane& plane);
-// A sentence on the time until which errors at the headline's level are known; "" if they all are.
-std::string span_of_errors(const std::vector<Plane>& planes);
 
 // JSON of schema inextensible-analysis/1, for `bench show --json` and figures.
 json analysis_of(const Runs& runs);

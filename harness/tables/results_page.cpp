@@ -108,69 +108,39 @@ std::vector<Plane> shown_planes(const std::vector<json>& sweeps) {
   return shown;
 }
 
-// Further measurements of a scene, from the fastest run of each ranked contestant.
-struct SceneTable {
-  const char *scene, *title, *unit;
-  std::string (*introduction)(const Point& one, const std::vector<double>& limits);
-  std::string (*cell)(const Point& point);
-};
-
-std::string about_sag(const Point& one, const std::vector<double>& limits) {
-  std::string parabolas;
-  for (const double limit : limits)
-    append(parabolas, plain(1e3 * claims::parabola_sag(one.scene_parameter("side"), limit), 3) +
-                          " mm at " + percent(limit));
-  return "How far the middle of the top row, and that of the lower edge, hang below where they "
-         "would if nothing stretched, mean over the last third of the run, each solver at its best "
-         "step; in brackets how fast it still moves. A top row that uses up its strain and bears "
-         "an even load is a parabola, which sags by " +
-         parabolas;
-}
-
-std::string sag_of(const Point& p) {
-  const auto& sag = p.measures().sag;
-  return plain(1e3 * sag.at("top_row"), 3) + ", " + plain(1e3 * sag.at("lower_edge"), 3) + " (" +
-         plain(p.measures().rest_speed, 2) + ")";
-}
-
-std::string about_slip(const Point&, const std::vector<double>&) {
-  return "How far the garment's rim is below the waist, where it began, mean over the last third "
-         "of the run, of the way to the hips: above 100 % it has slipped past them. In brackets "
-         "the time of computation for a frame of 1/30 s. Each solver at its best step";
-}
-
-std::string slip_text(const Point& p) {
-  const claims::Slip slip = claims::slip_of(p);
-  return plain(50 * (slip.least + slip.most), 3) + " (" + plain(p.seconds() / 30, 2) + ")";
-}
-
-constexpr SceneTable scene_tables[]{
-    {"hung_patch", "Sag of the hung patch", "mm (m/s)", about_sag, sag_of},
-    {"garment", "Slip of the garment", "% (s)", about_slip, slip_text}};
-
-void print_scene(std::ostream& out, const NamedResult& result, const SceneTable& about) {
+// Of scenes whose vertices are marked: how far these hang below where they would if nothing
+// stretched.
+void print_sags(std::ostream& out, const NamedResult& result) {
   const Runs runs(result.document);
   std::vector<Point> fastest;
   std::ranges::copy_if(runs.points, std::back_inserter(fastest), [&](const Point& p) {
-    return p.sweep() == "strain" && p.scene() == about.scene && p.ok() && p.result().best &&
+    return p.sweep() == "strain" && p.ok() && p.result().best && !p.measures().sag.empty() &&
            runs.roles.of(p.contestant()).ranked();
   });
-  if (fastest.empty()) return;
-  std::vector<double> limits = in_order(fastest, [](const Point& p) { return p.strain_limit(); });
-  std::sort(limits.rbegin(), limits.rend());
-  Table table{{"solver"}};
-  for (const double limit : limits) table.head.push_back(percent(limit) + ", " + about.unit);
-  for (const auto& [name, own] : grouped(fastest, &Point::contestant)) {
-    table.rows.push_back({name});
-    for (const double limit : limits) {
-      const auto at = std::ranges::find(own, limit, &Point::strain_limit);
-      table.rows.back().push_back(at == own.end() ? "-" : about.cell(*at));
+  std::ranges::stable_sort(fastest, std::greater(), &Point::strain_limit);
+  for (const auto& [scene, points] : grouped(fastest, &Point::scene)) {
+    std::string marks;
+    for (const auto& [name, sag] : points.front().measures().sag) append(marks, quoted(name));
+    Table table{{"solver"}};
+    const std::vector<double> limits = in_order(points, std::mem_fn(&Point::strain_limit));
+    for (const double limit : limits) table.head.push_back(percent(limit) + ", mm (m/s)");
+    for (const auto& [solver, own] : grouped(points, &Point::contestant)) {
+      auto& row = table.rows.emplace_back(1 + limits.size(), "-");
+      row[0] = solver;
+      for (const Point& p : own) {
+        std::string sags;
+        for (const auto& [name, sag] : p.measures().sag) append(sags, plain(1e3 * sag, 3));
+        row[1 + std::ranges::find(limits, p.strain_limit()) - limits.begin()] =
+            sags + " (" + plain(p.measures().rest_speed, 2) + ")";
+      }
     }
+    print_table(out,
+                "## Sag of " + scene_words(scene) + " (`" + result.name + "`)\n\nHow far " + marks +
+                    " hang below where they would if nothing stretched, mean over the last third "
+                    "of the run, each solver at its best step; in brackets how fast the cloth "
+                    "still moves",
+                table);
   }
-  print_table(out,
-              std::string("## ") + about.title + " (`" + result.name + "`)\n\n" +
-                  about.introduction(fastest.front(), limits),
-              table);
 }
 
 // One row per known answer, from the finest step that each solver finished.
@@ -317,10 +287,8 @@ void print_results_page(std::ostream& out, const std::vector<NamedResult>& resul
   out << "## The paper's claims (`bench claims` gives each rule)\n\n";
   print_claims_markdown(out, judge_claims(documents));
   out << '\n';
-  for (const SceneTable& about : scene_tables) {
-    for (const NamedResult& result : results)
-      if (!is_hard(result)) print_scene(out, result, about);
-  }
+  for (const NamedResult& result : results)
+    if (!is_hard(result)) print_sags(out, result);
   for (const NamedResult& result : answers) print_answers(out, result);
   for (const NamedResult& result : results)
     if (is_hard(result)) print_hard_cases(out, result);

@@ -47,6 +47,7 @@ std::vector<std::string> answer_row(const std::string& place, const Cell& looses
   auto row = entry_cells(*first, first->row + (first->role.unranked ? " u" : "") +
                                      (tightest.counting(1) && !tightest.clear() ? " ~" : ""));
   row.insert(row.begin(), {place, levels});
+  row.push_back(tightest.known_until > 0 ? number_text(tightest.known_until) + " s" : "-");
   row.push_back(lead_text(tightest));
   return row;
 }
@@ -70,10 +71,9 @@ void print_grid(std::ostream& out, const std::vector<Plane>& planes) {
   for (const auto& [title, group] : grouped(planes, title_of)) {
     const bool sizes = group.front().sweep == "resolution";
     Table table{{sizes ? "vertices" : "strain", "within", "fastest", "time", "step, s", "error",
-                 "times as long: best of the paper"}};
+                 "known to", "times as long: best of the paper"}};
     for (const Plane& plane : group) add_answers(table, plane, sizes);
     out << '\n' << title << ": the fastest within a strain limit and an error\n";
-    if (const std::string span = span_of_errors(group); !span.empty()) out << span << '\n';
     print_aligned(out, table);
   }
 }
