@@ -10,7 +10,7 @@ namespace {
 constexpr double headline_limit = 0.01;  // strain
 
 std::string name_words(const Entry& entry) {
-  return entry.row + (entry.role.unranked ? " with untuned settings" : "");
+  return entry.row + (entry.role.unranked ? " with other settings" : "");
 }
 
 // "a", "a and b", "a, b, c and 2 more".

@@ -38,18 +38,8 @@ void add_benchmarks(json& list, const PointResult& point, int family) {
   }
 }
 
-// A point's place in a comparison: everything but its contestant and the step, which best points
-// choose.
-std::string place_of(const PointSpec& spec) {
-  PointSpec place = spec;
-  place.contestant = place.solver = "";
-  place.settings.clear();
-  if (spec.sweep != "step") place.step = 0;
-  return key_of(place);
-}
-
 bool counts(const PointResult& point) {
-  return point.ok() && (point.best || point.spec.sweep == "step");
+  return point.ok() && (point.best || !point.best_at_errors.empty() || point.spec.sweep == "step");
 }
 
 // What a point's search for a best step has in common; of a hard case: case and solver.
@@ -238,15 +228,21 @@ json read_result(const std::string& path, ResultKinds kinds) {
 std::optional<PairNoise> pair_noise(const std::vector<PointResult>& points,
                                     const std::string& one) {
   PairNoise noise{{one, double_of(one)}};
-  std::map<std::string, double> first;
+  const auto place_of = [](PointSpec spec) {  // everything but the contestant
+    spec.contestant = spec.solver = "";
+    spec.settings.clear();
+    return key_of(spec);
+  };
+  std::map<std::string, const PointResult*> first;
   for (const PointResult& point : points)
-    if (counts(point) && point.spec.contestant == one)
-      first[place_of(point.spec)] = point.seconds();
+    if (point.ok() && !point.samples.empty() && point.spec.contestant == one)
+      first[place_of(point.spec)] = &point;
   std::vector<double> distances;
   for (const PointResult& point : points) {
-    if (!counts(point) || point.spec.contestant != noise.pair[1]) continue;
-    if (const auto twin = first.find(place_of(point.spec)); twin != first.end())
-      distances.push_back(std::abs(std::log(point.seconds() / twin->second)));
+    if (!point.ok() || point.samples.empty() || point.spec.contestant != noise.pair[1]) continue;
+    const auto twin = first.find(place_of(point.spec));
+    if (twin != first.end() && (counts(point) || counts(*twin->second)))
+      distances.push_back(std::abs(std::log(point.seconds() / twin->second->seconds())));
   }
   if (distances.empty()) return {};
   noise.places = static_cast<int>(distances.size());

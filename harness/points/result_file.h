@@ -46,9 +46,8 @@ struct NamedResult {
   json document;
 };
 
-// Over all places where both stand: |log(time of one / time of the other)|, of the times of
-// their best points, in a step sweep of all points that ran to the end. A difference below q95 is
-// none.
+// Over all places, steps included, where both ran to the end and one has a best point (in a step
+// sweep any): |log(time of one / time of the other)|. A difference below q95 is none.
 struct PairNoise {
   std::array<std::string, 2> pair;  // contestants
   int places = 0;

@@ -84,7 +84,8 @@ void print_planes(std::ostream& out, const std::vector<Plane>& planes) {
               "## Who is fastest\n\nIn each cell the fastest: its time for one simulated second "
               "and its step in s; then how many times as long the best of the paper's six takes, "
               "if it is not of them. Bold: faster than each other one beyond the noise. `u`: with "
-              "untuned settings. Errors are over the scene's size, up to the time to which the "
+              "settings other than its tuned ones. Errors are over the scene's size, up to the "
+              "time to which the "
               "references agree. The last three columns say where the lead comes from, in times "
               "the leader's time",
               answers);
@@ -199,21 +200,37 @@ void print_hard_cases(std::ostream& out, const NamedResult& result) {
 }
 
 void print_sources(std::ostream& out, const std::vector<NamedResult>& results) {
-  Table table{{"file", "date", "processor", "commit", "A/A pair", "places", "half", "95 %"}};
+  Table table{
+      {"file", "date", "processors", "commit", "A/A", "places", "occasions", "scatter", "outside"}};
   for (const NamedResult& result : results) {
     const json& context = result.document.at("context");
-    std::vector<std::string> row{result.name, context.at("date"), context.at("cpu_model"),
-                                 context.at("build").at("git")};
+    std::string processors = context.at("cpu_model");
+    for (const json& occasion : context.value("occasions", json::array()))
+      if (const std::string other = occasion.at("cpu_model"); processors.find(other) == other.npos)
+        append(processors, other);
+    std::vector<std::string> row{result.name, context.at("date").get<std::string>().substr(0, 16),
+                                 processors,
+                                 context.at("build").at("git").get<std::string>().substr(0, 12)};
     if (const auto noise = noise_of(context)) {
       // Excess of the longer time over the shorter one, from |log ratio|.
-      row.insert(row.end(), {quoted(noise->pair.front()), std::to_string(noise->places),
-                             percent(std::expm1(noise->median)), percent(std::expm1(noise->q95))});
+      row.insert(row.end(), {percent(std::expm1(noise->q95)), std::to_string(noise->places)});
+    }
+    if (const json scatter = context.value("scatter", json()); scatter.is_number()) {
+      const Coverage coverage = coverage_of(result.document);
+      row.resize(6, "-");
+      row.insert(row.end(), {std::to_string(coverage.occasions), percent(scatter)});
+      if (coverage.ratios > 0)
+        row.push_back(percent(static_cast<double>(coverage.outside) / coverage.ratios) + " of " +
+                      std::to_string(coverage.ratios));
     }
     row.resize(table.head.size(), "-");
     table.rows.push_back(std::move(row));
   }
   out << "## Where these numbers come from\n\nA/A: how far apart the times of one solver under two "
-         "names are, in half of all places at most and in 95 % of them.\n\n";
+         "names are, in 95 % of all places. Intervals come from the scatter (standard deviation) "
+         "of ratios of two times between occasions, hours apart; outside: how many ratios of one "
+         "occasion lie outside the interval that the others give. With a single occasion, "
+         "intervals are those of its samples, and say nothing of another day.\n\n";
   print_markdown(out, table);
 }
 

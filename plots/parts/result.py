@@ -59,7 +59,7 @@ class Result:
         without what the fastest run was like."""
         found = next((finding["sentences"][0] for finding in self.analysis["findings"]
                       if (finding["scene"], finding["sweep"]) == (scene, sweep) and vertices in (None, finding["vertices"])), "")
-        words = re.sub(r": [^;]*(;|\.$)", r"\1", found.replace(" with untuned settings", "")).rstrip(".")
+        words = re.sub(r": [^;]*(;|\.$)", r"\1", found.replace(" with other settings", "")).rstrip(".")
         words = re.sub(r"; (.+), the best of the paper's six, takes", r"; the paper's best, \1, takes", re.sub(r" \([^)]*\) times", " times", words))
         return f"{subject[:1].upper()}{subject[1:]}. {re.sub(r'[a-z0-9_@]+', lambda name: self.title(name[0]), words)}".rstrip(". ")
 

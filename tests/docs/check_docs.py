@@ -232,7 +232,7 @@ def errors_of(words: str) -> str:
 def claims_of(words: str) -> str:
     """The verdict on each of the paper's claims, from all committed results."""
     files = sorted(str(file) for file in (ROOT / "results").glob("*.json") if file.name != "answers.json")
-    said = re.findall(r"^(C\d+) \((.*?)\): (.*)\n  ([a-z ]+)", bench("claims", *files), re.MULTILINE)
+    said = re.findall(r"^(C\d+) \((.*?)\): (.*)\n  ([a-z ]+)", output_of("claims", *files), re.MULTILINE)
     return markdown(["", "claim", "verdict"], [[f"{name}, {where}", claim, verdict] for name, where, claim, verdict in said])
 
 
