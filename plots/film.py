@@ -87,7 +87,7 @@ def alarmed(picture: Image.Image, text: str, film: Film) -> Image.Image:
 def panel(film: Film, take: int, frame: int) -> Image.Image:
     """A picture and its caption."""
     of = film.takes[take]
-    with Image.open(film.folder / f"{take}-{min(frame, of['frames'] - 1)}.ppm") as opened:
+    with Image.open(film.folder / f"{take}-{min(frame, of['frames'] - 1)}.png") as opened:
         picture = opened.convert("RGB")
     if frame >= of["frames"]:
         pale = Image.blend(picture.convert("L").convert("RGB"), Image.new("RGB", picture.size, (235, 235, 235)), GREY)

@@ -64,16 +64,6 @@ const Cell* answered(const Plane& plane, double limit, double level) {
   return cell.first() ? &cell : nullptr;
 }
 
-// At the tightest level, from the headline's on, that has an answer.
-const Cell* headline_of(const Plane& plane, double limit) {
-  const Cell* found = nullptr;
-  for (const double level : plane.levels) {  // any motion, then loose to tight
-    const Cell* cell = answered(plane, limit, level);
-    if (cell && level >= headline_error) found = cell;
-  }
-  return found;
-}
-
 // The answer at the tightest limit below the headline's; else at any motion, if another method is
 // first there.
 const Cell* second_of(const Plane& plane, const Cell& headline) {
@@ -103,25 +93,37 @@ std::string sentence_of(const Cell& cell) {
          rival_words(cell, equals) + ".";
 }
 
+const Cell& headline_of(const Plane& plane) {
+  const double limit = std::ranges::min(
+      plane.limits, {}, [](double x) { return std::abs(std::log(x / headline_limit)); });
+  const Cell* found = &plane.cell(limit, any_motion);
+  for (const double level : plane.levels) {  // any motion, then loose to tight
+    const Cell* cell = answered(plane, limit, level);
+    if (cell && level >= headline_error) found = cell;
+  }
+  return *found;
+}
+
+bool is_largest(const Plane& plane, const std::vector<Plane>& planes) {
+  return plane.sweep != "resolution" || std::ranges::none_of(planes, [&](const Plane& other) {
+           return other.scene == plane.scene && other.sweep == plane.sweep &&
+                  other.vertices > plane.vertices;
+         });
+}
+
 std::vector<Finding> findings_of(const std::vector<Plane>& planes) {
   std::vector<Finding> findings;
   for (const Plane& plane : planes) {
-    const bool largest = std::ranges::none_of(planes, [&](const Plane& other) {
-      return other.scene == plane.scene && other.sweep == plane.sweep &&
-             other.vertices > plane.vertices;
-    });
-    if (plane.sweep == "resolution" && !largest) continue;
+    if (!is_largest(plane, planes)) continue;
     Finding finding{
         plane.scene,
         plane.sweep,
         plane.vertices,
         scene_words(plane.scene) + " of " + std::to_string(plane.vertices) + " vertices",
         {}};
-    const double limit = std::ranges::min(
-        plane.limits, {}, [](double x) { return std::abs(std::log(x / headline_limit)); });
-    const Cell* headline = headline_of(plane, limit);
-    finding.sentences.push_back(sentence_of(headline ? *headline : plane.cell(limit, any_motion)));
-    if (const Cell* second = headline ? second_of(plane, *headline) : nullptr)
+    const Cell& headline = headline_of(plane);
+    finding.sentences.push_back(sentence_of(headline));
+    if (const Cell* second = headline.first() ? second_of(plane, headline) : nullptr)
       finding.sentences.push_back(sentence_of(*second));
     findings.push_back(std::move(finding));
   }
@@ -134,22 +136,6 @@ std::string title_of(const Plane& plane) {
                    " strain"
              : scene_words(plane.scene) + ", " + std::to_string(plane.vertices) +
                    " vertices, over " + plane.sweep;
-}
-
-std::string span_of_errors(const std::vector<Plane>& planes) {
-  double first = std::numeric_limits<double>::infinity(), last = 0, duration = 0;
-  for (const Plane& plane : planes) {
-    for (const Cell& cell : plane.cells) {
-      if (cell.level != headline_error || !cell.first() || cell.known_until == 0) continue;
-      first = std::min(first, cell.known_until);
-      last = std::max(last, cell.known_until);
-      duration = std::max(duration, cell.first()->point.duration());
-    }
-  }
-  if (last == 0 || first > duration * (1 - 1e-9)) return "";
-  return concat("Errors of ", percent(headline_error), " are known up to ",
-                first < last ? number_text(first) + " or " : "", last, " s of ", duration,
-                " s: later the scene's references differ too much. ");
 }
 
 // ---- As JSON ----

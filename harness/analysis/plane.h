@@ -67,6 +67,12 @@ struct Plane {
 // In the order of runs.
 std::vector<Plane> planes_of(const Runs& runs);
 
+// The cell at the limit next to 1 % and the tightest level, down to the headline's, that has an
+// answer; at any motion if none has.
+const Cell& headline_of(const Plane& plane);
+// Of its resolution sweep; other sweeps have one size.
+bool is_largest(const Plane& plane, const std::vector<Plane>& planes);
+
 // ---- The answers in words, as the terminal, pages and figures print them ----
 
 // On one plane; for a resolution sweep on the largest one.
@@ -74,8 +80,7 @@ struct Finding {
   std::string scene, sweep;
   int vertices = 0;
   std::string subject;  // "drape of 5041 vertices"
-  // The answer at the limit next to 1 % and the headline's error, or to the nearest question that
-  // has one; then what a tighter limit, or any motion, changes.
+  // The headline's answer; then what a tighter limit, or any motion, changes.
   std::vector<std::string> sentences;
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Finding, scene, sweep, vertices, subject, sentences)
@@ -87,8 +92,6 @@ std::vector<Finding> findings_of(const std::vector<Plane>& planes);
 
 // "chain, 80 vertices, over strain". Planes of one title, as of a resolution sweep, share a table.
 std::string title_of(const Plane& plane);
-// A sentence on the time until which errors at the headline's level are known; "" if they all are.
-std::string span_of_errors(const std::vector<Plane>& planes);
 
 // JSON of schema inextensible-analysis/1, for `bench show --json` and figures.
 json analysis_of(const Runs& runs);

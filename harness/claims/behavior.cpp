@@ -157,16 +157,19 @@ Verdict same_frame(const Points& points) {
 Verdict strain_after_collision(const Points& points) {
   Verdict found;
   int all = 0, kept = 0;
-  std::map<std::string, std::vector<double>> over_limit;  // by contestant
+  std::map<std::string, std::vector<double>> over_limit;  // by method
   for (const Point& p : points.all) {
+    const std::string row = points.roles.of(p.contestant()).row();
+    const auto method = std::ranges::find(all_paper_methods, row, &PaperMethod::name);
     if (p.scene() != "drape" || !p.collides_last() || !p.ok() || !p.result().best ||
-        !points.roles.of(p.contestant()).ranked() || !std::isfinite(p.delivered_strain()))
+        method == all_paper_methods.end() || !std::isfinite(p.delivered_strain()))
       continue;
     const double over = p.delivered_strain() / p.strain_limit();
-    over_limit[p.contestant()].push_back(over);
+    over_limit[method->words].push_back(over);
+    found.points.push_back(p.id());
+    if (row != fast_projection.name) continue;
     ++all;
     kept += over <= 1.5 ? 1 : 0;
-    found.points.push_back(p.id());
   }
   if (all == 0) return {};
   for (const auto& [name, list] : over_limit) {

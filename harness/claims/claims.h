@@ -41,6 +41,13 @@ using analysis::text;
 std::string text(double value, int digits = 3);
 std::string text(const Slope& slope);  // "-0.5 ± 0.1", with its 95 % interval
 
+// What a claim is asked at. The paper compares by strain alone, in the methods' own stepper.
+struct Question {
+  double level = any_motion;  // of error
+  bool any_stepper = false;   // each method in the stepper that is best for it
+  bool tighter = false;       // a run at a tighter strain limit counts, too
+};
+
 using Curve = std::map<double, Point>;  // by the value on the axis: a strain limit or vertices
 
 // The points of some result files, which must outlive this. Points in several files count once;
@@ -53,18 +60,19 @@ struct Points {
   ContestantRoles roles;
   std::vector<const json*> matrix, freedom, same_frame;  // of stability sweeps
 
-  // The best points of a contestant within a level of error, over the axis of a sweep ("strain" or
-  // "resolution"). The faster of tuned and default settings counts, so that tuning
-  // harms nobody. A strain sweep counts at its largest size unless `vertices` are given.
-  Curve best(const std::string& scene, const std::string& sweep, const std::string& contestant,
-             double level = any_motion, std::optional<double> vertices = {}) const;
+  // The best points of a method over the axis of a sweep ("strain" or "resolution"). The faster of
+  // tuned and default settings counts, so that tuning harms nobody. A strain sweep counts at its
+  // largest size unless `vertices` are given.
+  Curve best(const std::string& scene, const std::string& sweep, const std::string& method,
+             const Question& question = {}, std::optional<double> vertices = {}) const;
 };
 
 std::optional<Point> at(const Curve& curve, double x);
 std::vector<std::string> ids_of(const std::vector<Curve>& curves);
 
-// The project's question (an error of at most 2 %) decides; beside it is the paper's (any motion).
-Verdict at_levels(const std::function<Verdict(double level)>& judge);
+// The paper's question decides. Beside it stands the answer at an error of at most 2 %, and in the
+// best stepper of each method. Runs at tighter limits count in all.
+Verdict at_questions(const std::function<Verdict(const Question&)>& judge);
 
 // One function per claim; not_measured where measurements are missing.
 using Judge = Verdict(const Points& points);

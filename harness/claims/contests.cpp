@@ -63,12 +63,12 @@ Verdict growth(const Curve& springs, const Curve& fast,
   return found;
 }
 
-Verdict growth_at_levels(const Points& points, const char* sweep,
-                         Answer (*fast_is_better)(const Slope&, double),
-                         std::string (*place)(double)) {
-  return at_levels([=, &points](double level) {
-    return growth(points.best("chain", sweep, implicit_springs.name, level),
-                  points.best("chain", sweep, fast_projection.name, level), fast_is_better, place);
+Verdict growth_at_questions(const Points& points, const char* sweep,
+                            Answer (*fast_is_better)(const Slope&, double),
+                            std::string (*place)(double)) {
+  return at_questions([=, &points](const Question& asked) {
+    return growth(points.best("chain", sweep, implicit_springs.name, asked),
+                  points.best("chain", sweep, fast_projection.name, asked), fast_is_better, place);
   });
 }
 
@@ -89,9 +89,9 @@ std::string tally(const std::vector<Answer>& answers) {
 }
 
 // C5 at one size. Strain limiting that was stopped far behind may have no slope at a large size.
-Verdict drape_over_strain(const Points& points, double level, double vertices) {
+Verdict drape_over_strain(const Points& points, const Question& asked, double vertices) {
   const auto curve_of = [&](const PaperMethod& method) {
-    return points.best("drape", "strain", method.name, level, vertices);
+    return points.best("drape", "strain", method.name, asked, vertices);
   };
   const Curve fast = curve_of(fast_projection);
   const std::vector<Curve> limiting{curve_of(jacobi), curve_of(gauss_seidel)};
@@ -155,17 +155,17 @@ Answer smaller(const Steps& a, const Steps& b) {
 }  // namespace
 
 Verdict chain_time_over_strain(const Points& points) {
-  return growth_at_levels(points, "strain", below, percent);
+  return growth_at_questions(points, "strain", below, percent);
 }
 
 Verdict chain_time_over_resolution(const Points& points) {
-  return growth_at_levels(points, "resolution", above, vertices_of);
+  return growth_at_questions(points, "resolution", above, vertices_of);
 }
 
 Verdict chain_speed(const Points& points) {
-  return at_levels([&](double level) -> Verdict {
+  return at_questions([&](const Question& asked) -> Verdict {
     const auto at_one_percent = [&](const PaperMethod& method) {
-      return at(points.best("chain", "strain", method.name, level), 0.01);
+      return at(points.best("chain", "strain", method.name, asked), 0.01);
     };
     const auto springs = at_one_percent(implicit_springs), fast = at_one_percent(fast_projection);
     if (!springs || !fast || springs->vertices() != 80) return {};  // the paper's chain
@@ -188,21 +188,21 @@ Verdict drape_time_over_strain(const Points& points) {
   std::map<double, int, std::greater<>> sizes;
   for (const Point& p : points.all)
     if (p.scene() == "drape" && p.sweep() == "strain") ++sizes[p.vertices()];
-  return at_levels([&](double level) {
+  return at_questions([&](const Question& asked) {
     Verdict found;
     for (const auto& size : sizes)
-      if (found.verdict == not_measured) found = drape_over_strain(points, level, size.first);
+      if (found.verdict == not_measured) found = drape_over_strain(points, asked, size.first);
     return found;
   });
 }
 
 Verdict drape_time_over_resolution(const Points& points) {
-  return at_levels([&](double level) -> Verdict {
-    const Curve fast = points.best("drape", "resolution", fast_projection.name, level);
+  return at_questions([&](const Question& asked) -> Verdict {
+    const Curve fast = points.best("drape", "resolution", fast_projection.name, asked);
     std::map<std::string, Curve> others;
     for (const PaperMethod& method : all_paper_methods)
       if (method.name != fast_projection.name)
-        others[method.words] = points.best("drape", "resolution", method.name, level);
+        others[method.words] = points.best("drape", "resolution", method.name, asked);
     std::string details;
     std::vector<Answer> sizes;
     for (const auto& [vertices, point] : fast) {
@@ -258,18 +258,19 @@ Verdict matrix_sizes(const Points& points) {
 }
 
 Verdict shake_small_steps(const Points& points) {
-  return at_levels([&](double level) -> Verdict {
+  return at_questions([&](const Question& asked) -> Verdict {
     std::vector<Answer> answers;
     std::string details;
     std::vector<std::string> evidence;
     for (const char* sweep : {"strain", "resolution"}) {
-      const Curve icd_curve = points.best("drape", sweep, icd.name, level);
-      for (const auto& [place, p] : points.best("drape", sweep, shake.name, level)) {
+      const Curve icd_curve = points.best("drape", sweep, icd.name, asked);
+      for (const auto& [place, p] : points.best("drape", sweep, shake.name, asked)) {
         const auto other = at(icd_curve, place);
         if (!other || std::isnan(p.measures().energy_gain) ||
             std::isnan(other->measures().energy_gain))
           continue;
-        const Steps steps = steps_of(points, p, level), larger = steps_of(points, *other, level);
+        const Steps steps = steps_of(points, p, asked.level),
+                    larger = steps_of(points, *other, asked.level);
         const Ratio times = ratio(*other, p);
         const double by = other->step() / p.step();
         const Ratio costlier{times.value * by, times.low * by, times.high * by};

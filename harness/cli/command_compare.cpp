@@ -12,29 +12,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Options of the verbs that compare: a gate, and a report beside the table on stdout.
 struct CompareOptions {
-  std::string gate, junit;
+  std::string gate;
 
   void declare(const Command& to) {
     to.option("--gate", gate, "what passes; default: configs/gate.json", "FILE");
-    to.option("--junit", junit, "also write JUnit XML, one test case a point", "FILE");
   }
 
   Gate given_gate() const {
     return read_gate(gate.empty() ? source_path("configs/gate.json") : gate);
   }
 
-  // Throws UsageError for a report that cannot be written.
-  void check_report() const {
-    if (!junit.empty()) check_writable(junit);
-  }
-
-  // Prints the comparison and writes the report. Returns the exit code: a failure outranks a
-  // regression. name: JUnit suite. undecided: message for ambiguous times.
-  int report(const Comparison& comparison, const std::string& name,
-             const std::string& undecided) const {
-    if (!junit.empty()) write_atomically(junit, junit_xml(comparison, name));
+  // Returns the exit code: a failure outranks a regression. undecided: message for ambiguous times.
+  static int report(const Comparison& comparison, const std::string& undecided) {
     print_comparison(std::cout, comparison);
     if (comparison.any(is_failure)) return unexpected_outcome;
     if (comparison.any(is_regression)) return regression;
@@ -58,9 +48,8 @@ struct Compare : CompareOptions {
   int run() {
     const Gate passes = given_gate();
     const ComparedResult before = read_compared({base}), after = read_compared(next);
-    check_report();
     try {
-      return report(compare(before, after, passes), "bench compare",
+      return report(compare(before, after, passes),
                     "times of best points differ, but too few runs or too noisy a machine leave "
                     "open whether that is noise: take more --reps, or use bench ab, which times in "
                     "pairs");
@@ -234,7 +223,6 @@ struct Ab : CompareOptions {
 
   int run() {
     const Gate passes = gate_of();
-    check_report();
     for (Program* program : {&before, &after}) {
       program->path = program_named(program->path);
       program->check();
@@ -254,7 +242,7 @@ struct Ab : CompareOptions {
                            return run_one(side == Side::old_one ? before : after, point);
                          });
     if (!can.counters()) comparison.notes.push_back("counters not compared: " + can.no_counters);
-    return report(comparison, "bench ab",
+    return report(comparison,
                   "some points cannot be decided (AMBIGUOUS above): take more --pairs and "
                   "--sample-seconds, or a quieter machine");
   }

@@ -55,8 +55,7 @@ struct JudgeVerb {
 
   void declare(const Command& command) {
     command.option("folder", scene, "a scene that bench export wrote", "FOLDER");
-    command.option("trajectory", files, "one .npz or .pc2 file, or numbered .obj files",
-                   "FILE ...");
+    command.option("trajectory", files, "one .npz file, or numbered .obj files", "FILE ...");
     command.require({"folder", "trajectory"});
     command.option("--fps", rate, "frames a second, where the file has no times", "N",
                    Bounds::positive());

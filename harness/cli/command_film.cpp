@@ -11,12 +11,10 @@ namespace harness {
 namespace {
 
 constexpr int default_width = 480;
-// Rays a pixel in each direction: a film has hundreds of pictures, so it gets fewer than a still.
-constexpr int still_samples = 6, film_samples = 3;
 
 using analysis::percent;
 
-const std::set<std::string> picture_endings{".webp", ".mp4", ".png"}, mesh_endings{".obj", ".pc2"};
+const std::set<std::string> picture_endings{".webp", ".mp4", ".png"};
 
 std::string name_of(const FilmRun& run, const std::string& solver) {
   return solver + ", " + percent(run.strain_limit) + ", steps of " + step_text(run.step) + " s";
@@ -60,7 +58,7 @@ struct Film : SceneOptions {
     command.option("--width", width, "of each picture; default: 480", "PIXELS",
                    {.least = 16, .most = 4096, .whole = true});
     command.option("--out", out,
-                   ".webp or .mp4: a film; .png: stills; .obj, .pc2: for other programs; "
+                   ".webp or .mp4: a film; .png: stills; .obj: for other programs; "
                    "default: results/local/film-<scene>.webp, .png with --stills",
                    "FILE");
   }
@@ -98,13 +96,11 @@ struct Film : SceneOptions {
   }
 
   void check_format(const std::string& ending) const {
-    if (!picture_endings.contains(ending) && !mesh_endings.contains(ending))
-      throw UsageError("--out '" + out +
-                       "': must end in .webp, .mp4, .png (stills), .obj or .pc2 (Blender)");
+    if (!picture_endings.contains(ending) && ending != ".obj")
+      throw UsageError("--out '" + out + "': must end in .webp, .mp4, .png (stills) or .obj");
     if (!stills.empty() && ending != ".png")
       throw UsageError("--stills: --out '" + out + "' must end in .png");
-    if (width > 0 && mesh_endings.contains(ending))
-      throw UsageError("--width: '" + out + "' has no pictures");
+    if (width > 0 && ending == ".obj") throw UsageError("--width: '" + out + "' has no pictures");
   }
 
   // Impossible scene parameters, or a method that cannot run the scene, are the user's mistake.
@@ -125,8 +121,7 @@ struct Film : SceneOptions {
     const TemporaryFolder folder("film");
     Progress progress;
     write_pictures(
-        folder.path(), recording,
-        {frames, width > 0 ? width : default_width, still ? still_samples : film_samples},
+        folder.path(), recording, {frames, width > 0 ? width : default_width, still},
         [&progress](std::size_t done, std::size_t all) { progress.show(done, all, "pictures"); });
     progress.clear();
     return draw("film.py", {folder.path()}, out);
@@ -143,6 +138,7 @@ struct Film : SceneOptions {
     const bool still = ending == ".png";
     const auto frames = shown_frames(still);  // before anything runs
     check_writable(out);
+    if (picture_endings.contains(ending)) check_povray();
     const Recording recording = recorded();
     print_times(recording);
     if (picture_endings.contains(ending)) return draw_pictures(recording, frames, still);
@@ -151,7 +147,7 @@ struct Film : SceneOptions {
       const std::string own_part =
           recording.takes.size() == 1 ? "" : "-" + run.solver + "-" + number_text(run.strain_limit);
       for (const std::string& path :
-           write_run(recording, run, folder, place.stem().string() + own_part, ending))
+           write_meshes(recording, run, folder, place.stem().string() + own_part))
         std::cout << path << '\n';
     }
     return success;

@@ -176,11 +176,7 @@ using RunOne = std::function<ComparedPoint(Side, const PairedPoint&)>;
 Comparison compare_in_pairs(std::vector<PairedPoint> points, int pairs, int confirming,
                             const Gate& gate, const Comparability& can, const RunOne& run);
 
-// ---- Reports ----
-
 // A table of the points that are not SAME, notes, and the number of changes of each kind.
 void print_comparison(std::ostream& out, const Comparison& comparison);
-// One test case per point; regressions and failures fail. name: the suite's.
-std::string junit_xml(const Comparison& comparison, const std::string& name);
 
 }  // namespace harness

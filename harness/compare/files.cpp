@@ -1,7 +1,5 @@
-// Gates, results and baselines read; baselines, tables and JUnit XML written.
+// Gates, results and baselines read; baselines and tables written.
 #include "harness/base/files.h"
-
-#include <unordered_map>
 
 #include "harness/base/table.h"
 #include "harness/base/text.h"
@@ -159,8 +157,6 @@ ordered_json baseline_document(const ComparedResult& result) {
 
 namespace {
 
-bool fails(Change change) { return is_failure(change) || is_regression(change); }
-
 std::vector<PointChange> rows_of(const Comparison& comparison) {
   std::vector<PointChange> rows = comparison.points;
   std::erase_if(rows,
@@ -192,27 +188,6 @@ std::vector<std::string> all_notes(const Comparison& comparison) {
   return notes;
 }
 
-// Control characters have no place in XML 1.0, not even escaped.
-std::string xml(const std::string& text) {
-  static const std::unordered_map<char, std::string> escapes{
-      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\n', "&#10;"}};
-  std::string result;
-  for (const char c : text)
-    if (const auto found = escapes.find(c); found != escapes.end())
-      result += found->second;
-    else
-      result += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
-  return result;
-}
-
-// "drape/icd/n:225/..." of sweep strain: class strain.drape.icd.
-std::string class_name(const PointChange& point) {
-  const auto scene = point.id.find('/'), solver = point.id.find('/', scene + 1);
-  std::string name = point.sweep + "." + point.id.substr(0, solver);
-  std::replace(name.begin(), name.end(), '/', '.');
-  return name;
-}
-
 }  // namespace
 
 void print_comparison(std::ostream& out, const Comparison& comparison) {
@@ -223,29 +198,6 @@ void print_comparison(std::ostream& out, const Comparison& comparison) {
   if (!table.rows.empty()) out << '\n';
   for (const std::string& note : all_notes(comparison)) out << "note: " << note << '\n';
   out << counts(comparison) << std::endl;
-}
-
-std::string junit_xml(const Comparison& comparison, const std::string& name) {
-  std::ostringstream cases;
-  int failures = 0;
-  for (const PointChange& point : comparison.points) {
-    const std::string change = to_string(point.change), what = xml(change + ": " + point.text());
-    cases << "<testcase classname=\"" << xml(class_name(point)) << "\" name=\"" << xml(point.id)
-          << "\"";
-    if (fails(point.change)) {
-      ++failures;
-      cases << "><failure type=\"" << change << "\" message=\"" << what << "\"/></testcase>\n";
-    } else if (point.change != Change::same || !point.reasons.empty()) {
-      cases << "><system-out>" << what << "</system-out></testcase>\n";
-    } else {
-      cases << "/>\n";
-    }
-  }
-  const std::string totals = " tests=\"" + std::to_string(comparison.points.size()) +
-                             "\" failures=\"" + std::to_string(failures) + "\" errors=\"0\"";
-  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites" + totals +
-         ">\n<testsuite name=\"" + xml(name) + "\"" + totals + ">\n" + cases.str() +
-         "</testsuite>\n</testsuites>\n";
 }
 
 }  // namespace harness

@@ -1,8 +1,6 @@
-// Films: positions of a scene at the frames of a film, by several solvers; ray-traced pictures
-// (Embree) of them by one camera, with strain as colour and yarns as lines; and files to export.
+// Films: positions of a scene at the frames of a film, by several solvers; pictures of them, which
+// POV-Ray traces, by one camera, with strain as colour and yarns as lines; and files to export.
 #pragma once
-
-#include <Eigen/Geometry>
 
 #include "harness/points/contestant.h"
 #include "solvers/problem/triangle_collider.h"
@@ -46,70 +44,24 @@ Recording record(const FilmSpec& spec, const std::function<void(const FilmRun&)>
 
 Positions body_at(const Recording& recording, std::size_t frame);
 
-struct View {
-  Eigen::Vector3d centre, eye;         // m
-  Eigen::Vector3d right, up, towards;  // unit vectors; towards: from the centre to the eye
-  double size = 1;                     // half of what a picture shows, m
-  double aspect = 1;                   // a picture's height over its width
-  double tangent = 1;                  // of half the angle that a picture's width covers
-
-  int height(int width) const;  // pixels
-  // The direction from the eye through x from -1 (left) to 1 and y from -1 (below) to 1.
-  Eigen::Vector3d ray(double x, double y) const;
-};
-
-// Sees the body and the cloth of all runs at these frames, or at the last one of a run that has
-// ended. Cloth that falls far leaves the picture instead of making it small.
-View view_of(const Recording& recording, const std::vector<std::size_t>& frames);
-
-// ---- light and colours (tracer.cpp) ----
-
-// Light is computed in linear colours from 0 to 1; files hold sRGB.
-Eigen::Vector3d linear(const Eigen::Vector3d& srgb);
-std::array<std::uint8_t, 3> shade(const Eigen::Vector3d& rgb);  // linear to sRGB
-
-// What a picture shows at one time; the recording must outlive it.
-struct Shot {
-  const Recording& recording;  // a scene without triangles is drawn as a rope
-  Positions cloth;             // m
-  // Which sides of each triangle are yarns: 1 from corner 0 to 1, 2 from 1 to 2, 4 from 2 to 0.
-  std::vector<std::uint8_t> yarns = {};
-  Eigen::Matrix3Xd colours = {};  // of each vertex, linear
-  Positions body = {};            // m; empty: none
-  double yarn = 0;                // half the width of a line, or the radius of a rope, m
-  double yarn_shade = 0;          // how much darker a line is: 0 to 1
-  double thickness = 0;           // depth inside the body at which cloth is still visible, m
-};
-
-struct Pixels {
-  int width = 0, height = 0;
-  std::vector<std::uint8_t> rgb;  // rows from above, sRGB
-};
-
-// Takes samples x samples rays a pixel, in one pattern for all. Safe to call from several threads.
-Pixels trace(const Shot& shot, const View& view, int width, int samples);
-
 struct PictureSpec {
   std::vector<std::size_t> frames;  // in rising order
   int width = 480;                  // pixels
-  int samples = 2;                  // a pixel has samples x samples
+  bool still = false;               // worth more rays a pixel than one of the hundreds of a film
 };
 
-Shot shot_of(const Recording& recording, const View& view, std::size_t take, std::size_t frame,
-             int width);
+// Throws UsageError unless POV-Ray is installed.
+void check_povray();
 
-// Writes <take>-<frame>.ppm for each frame that a run has (or its last one) into a folder, using
+// Writes <take>-<frame>.png for each frame that a run has (or its last one) into a folder, using
 // all cores, and film.json, which plots/film.py reads. Throws FileError, Interrupted.
 void write_pictures(const std::string& folder, const Recording& recording, const PictureSpec& spec,
                     const std::function<void(std::size_t done, std::size_t all)>& told);
 
-// Writes a run into an existing folder and returns the paths to open. By the ending:
-//   .obj  Wavefront OBJ, one file a frame (<name>-0001.obj ...), faces for cloth, lines for chains;
-//         ParaView opens the files as a series
-//   .pc2  the first frame as OBJ, and a point cache for Blender's modifier "Mesh Cache"
-// A body has files of its own, <name>-body...: one if it does not move, else as many as the cloth.
-std::vector<std::string> write_run(const Recording& recording, const FilmRun& take,
-                                   const std::string& folder, const std::string& name,
-                                   const std::string& ending);
+// Writes a run into an existing folder as Wavefront OBJ and returns the paths: <name>-0001.obj and
+// so on, a file a frame, with faces for cloth and lines for chains. A body has files of its own,
+// <name>-body...: one if it does not move, else as many as the cloth.
+std::vector<std::string> write_meshes(const Recording& recording, const FilmRun& take,
+                                      const std::string& folder, const std::string& name);
 
 }  // namespace harness

@@ -1,9 +1,14 @@
 
+#include <iomanip>
+#include <sstream>
+
+#include "harness/base/files.h"
 #include "harness/base/text.h"
 #include "harness/film/film.h"
 #include "harness/judge/drive.h"
 #include "harness/judge/mechanics.h"
 #include "harness/run/measure_point.h"
+#include "harness/scenes/mesh_file.h"
 
 namespace harness {
 namespace {
@@ -125,6 +130,28 @@ Recording record(const FilmSpec& spec, const std::function<void(const FilmRun&)>
     for (const Contestant& contestant : spec.solvers)
       recording.takes.push_back(take_of(spec, scene, contestant, limit, told));
   return recording;
+}
+
+std::vector<std::string> write_meshes(const Recording& recording, const FilmRun& take,
+                                      const std::string& folder, const std::string& name) {
+  std::vector<std::string> paths;
+  const auto write = [&](const std::string& part, const Positions& x, const auto& triangles,
+                         const std::vector<Edge>& edges) {
+    paths.push_back(concat(folder, "/", name, part, ".obj"));
+    check_writable(paths.back());
+    write_atomically(paths.back(), obj_text(x, triangles, edges, 9));
+  };
+  const Scene& scene = recording.scene;
+  for (std::size_t i = 0; i < take.frames.size(); ++i) {
+    std::ostringstream number;
+    number << '-' << std::setw(4) << std::setfill('0') << i + 1;
+    write(number.str(), take.frames[i], scene.triangles, scene.problem->edges());
+    const bool stays = recording.body_poses.empty();
+    if (!recording.body.vertices.empty() && (i == 0 || !stays))
+      write("-body" + (stays ? "" : number.str()), body_at(recording, i), recording.body.triangles,
+            {});
+  }
+  return paths;
 }
 
 }  // namespace harness

@@ -1,7 +1,5 @@
 #include "harness/judge/trajectory.h"
 
-#include <numeric>
-
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/text.h"
@@ -23,28 +21,6 @@ Frames frames_of_npz(const std::string& path) {
     throw UsageError("'" + path + "' has no array 'positions' (frames x vertices x 3)");
   Frames frames{path_of(arrays.at("positions"), path)};
   if (arrays.contains("times")) frames.times = arrays.at("times").values;
-  return frames;
-}
-
-Frames frames_of_pc2(const std::string& path) {
-  const std::string bytes = read_file(path, "point cache");
-  PointCacheHead head;
-  std::memcpy(&head, bytes.data(), std::min(bytes.size(), sizeof head));
-  if (std::memcmp(head.name, PointCacheHead().name, sizeof head.name) != 0 || head.points < 1 ||
-      head.samples < 1)
-    throw UsageError("'" + path + "' is not a point cache (.pc2)");
-  const std::size_t floats = 3 * static_cast<std::size_t>(head.points);
-  const auto samples = static_cast<std::size_t>(head.samples);
-  if (bytes.size() < sizeof head + samples * floats * sizeof(float))
-    throw UsageError(concat("'", path, "' ends before the last of its ", samples, " frames"));
-  Frames frames;
-  std::vector<float> row(floats);
-  for (std::size_t k = 0; k < samples; ++k) {
-    std::memcpy(row.data(), bytes.data() + sizeof head + k * floats * sizeof(float),
-                floats * sizeof(float));
-    frames.path.emplace_back(
-        Eigen::Map<const Eigen::Matrix3Xf>(row.data(), 3, head.points).cast<double>());
-  }
   return frames;
 }
 
@@ -74,9 +50,8 @@ Frames frames_of(const std::vector<std::string>& files) {
     return std::ranges::all_of(files, [&](const std::string& f) { return f.ends_with(ending); });
   };
   if (files.size() == 1 && all_end(".npz")) return frames_of_npz(files[0]);
-  if (files.size() == 1 && all_end(".pc2")) return frames_of_pc2(files[0]);
   if (!files.empty() && all_end(".obj")) return frames_of_objs(files);
-  throw UsageError("a trajectory is one .npz file, one .pc2 file, or numbered .obj files");
+  throw UsageError("a trajectory is one .npz file or numbered .obj files");
 }
 
 double diagonal(const Positions& x) {

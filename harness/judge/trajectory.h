@@ -6,22 +6,13 @@
 
 namespace harness {
 
-// A point cache (.pc2): this, then the points of each sample in single precision.
-struct PointCacheHead {
-  char name[12] = "POINTCACHE2";
-  std::int32_t version = 1, points = 0;
-  float first_frame = 0, frames_per_sample = 1;
-  std::int32_t samples = 0;
-};
-static_assert(sizeof(PointCacheHead) == 32);
-
 struct Trajectory {
   double interval = 0;  // s between frames; the first is the scene's start
   Path frames;
 };
 
-// An .npz file (`positions`: frames x vertices x 3, and `times` unless the rate is given), a .pc2
-// point cache, or numbered OBJ files in their order. rate: frames a second; 0: not given. Throws
+// An .npz file (`positions`: frames x vertices x 3, and `times` unless the rate is given), or
+// numbered OBJ files in their order. rate: frames a second; 0: not given. Throws
 // UsageError, naming file and frame, for frames that are missing, not finite or not of this scene.
 Trajectory read_trajectory(const std::vector<std::string>& files, const Scene& scene, double rate);
 

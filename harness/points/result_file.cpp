@@ -138,6 +138,8 @@ void check_points(const json& document, const std::string& path) {
 json row_of(PointResult point) {
   point.measures.error_levels = levels_of_series(point.measures);
   point.measures.error_series.clear();
+  for (auto* times : {&point.samples, &point.cpu_samples, &point.filter_samples})
+    for (double& seconds : *times) seconds = rounded_to(seconds);  // quantiles are of these
   json row = to_json(point);
   for (const char* measured :
        {"seconds_per_simulated_second", "filter_seconds_per_simulated_second",

@@ -110,6 +110,7 @@ Suite suite_of(const json& document, const std::string& path) {
     throw UsageError(where + ": 'name' is " + value_text(suite.name) +
                      ", must be letters, digits, _ . and - (results are named after it)");
   suite.same = document.value("same", "");
+  suite.far_behind = document.value("far_behind", suite.far_behind);
   std::optional<Tuned> tuned;
   if (const std::string file = document.value("tuned", ""); !file.empty()) {
     tuned = read_tuned_up_to_date(file);
@@ -142,6 +143,7 @@ json to_json(const Suite& suite) {
                       {"refine", s.refine}};
   }
   if (!suite.same.empty()) document["same"] = suite.same;
+  if (std::isfinite(suite.far_behind)) document["far_behind"] = suite.far_behind;
   return document;
 }
 

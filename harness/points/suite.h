@@ -38,7 +38,7 @@ struct Suite {
   // The file that the contestants' tuned settings are from, and a hash of what it says; "": none.
   std::string tuned_file, tuned_hash;
   std::vector<SweepSpec> sweeps;
-  // A run is stopped once it takes this many times as long as the fastest one there. Not in files.
+  // A run is stopped once it takes this many times as long as the fastest one there. Infinite: never.
   double far_behind = 30;
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Suite, name, description, profile, seed, reps,

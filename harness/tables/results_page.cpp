@@ -45,165 +45,102 @@ std::string cell_text(const Cell& cell) {
   return text;
 }
 
-Table table_of(const std::vector<Plane>& planes) {
-  const bool sizes = planes.front().sweep == "resolution";
-  Table table{{sizes ? "vertices" : "strain"}, {}, 0};
+// "1.7 (1.5-1.8) `icd`": a rival's time over the first's.
+std::string lead_text(const Cell& cell, Rival which) {
+  const Entry* other = cell.rival(which);
+  if (!other) return "-";
+  return other == cell.first() ? "itself"
+                               : analysis::text(*cell.lead_over(other)) + " " + quoted(other->row);
+}
+
+// Who is fastest at the headline's limit and error, and how much of that is stepper or method; then
+// at every limit and error.
+void print_planes(std::ostream& out, const std::vector<Plane>& planes) {
+  Table answers{
+      {"scene, vertices", "strain", "error", "known to", "fastest", "its method as published",
+       "next method in its stepper", "paper's six in any stepper"},
+      {},
+      0},
+      grid{{"scene, vertices, sweep", "strain"}, {}, 0};
   for (const double level : planes.front().levels)
-    table.head.push_back(level == any_motion ? "any motion" : "error <= " + percent(level));
+    grid.head.push_back(level == any_motion ? "any motion" : "error <= " + percent(level));
   for (const Plane& plane : planes) {
+    const std::string place = scene_words(plane.scene) + ", " + std::to_string(plane.vertices);
     for (const Cell& cell : plane.cells) {  // by limit, then by level
       if (cell.level == plane.levels.front())
-        table.rows.push_back({sizes ? std::to_string(plane.vertices) : percent(cell.strain_limit)});
-      table.rows.back().push_back(cell_text(cell));
+        grid.rows.push_back({place + ", " + plane.sweep, percent(cell.strain_limit)});
+      grid.rows.back().push_back(cell_text(cell));
     }
+    const Cell& cell = headline_of(plane);
+    if (!cell.first() || !is_largest(plane, planes)) continue;
+    answers.rows.push_back(
+        {place, percent(cell.strain_limit), cell.level == any_motion ? "any" : percent(cell.level),
+         cell.known_until > 0 ? number_text(cell.known_until) + " s" : "-", cell_text(cell)});
+    for (const Rival which :
+         {Rival::first_as_published, Rival::rival_in_stepper, Rival::paper_in_any_stepper})
+      answers.rows.back().push_back(lead_text(cell, which));
   }
-  return table;
+  print_table(out,
+              "## Who is fastest\n\nIn each cell the fastest: its time for one simulated second "
+              "and its step in s; then how many times as long the best of the paper's six takes, "
+              "if it is not of them. Bold: faster than each other one beyond the noise. `u`: with "
+              "untuned settings. Errors are over the scene's size, up to the time to which the "
+              "references agree. The last three columns say where the lead comes from, in times "
+              "the leader's time",
+              answers);
+  out << "### Fastest within each strain and error\n\n";
+  print_markdown(out, grid);
+  out << '\n';
 }
 
-// Splits the lead at 1 % strain and the headline's error between stepper and method.
-void print_attribution(std::ostream& out, const Plane& plane) {
-  constexpr double limit = 0.01;
-  for (const Cell& cell : plane.cells) {
-    const Entry* first = cell.first();
-    if (cell.level != headline_error || cell.strain_limit != limit || !first) continue;
-    out << "Where the lead of " << quoted(first->row) << " at " << percent(limit)
-        << " comes from, in times its time: ";
-    for (const auto& [words, which] :
-         {std::pair("the same method as published ", Rival::first_as_published),
-          {"; the next method in the same stepper ", Rival::rival_in_stepper},
-          {"; the paper's best as published ", Rival::paper_best},
-          {", in any stepper ", Rival::paper_in_any_stepper}}) {
-      const Entry* other = cell.rival(which);
-      out << words
-          << (!other           ? "none in these results"
-              : other == first ? "itself"
-                               : analysis::text(*cell.lead_over(other)) + " " + quoted(other->row));
-    }
-    out << ". ";
-  }
-}
-
-// The slack in each method's least error at 1 %: what a limit of 0.1 % removes at the same step.
-void print_slack(std::ostream& out, const ContestantRoles& roles, const Plane& plane) {
-  constexpr double loose = 0.01, tight = 0.001;
-  const auto kept_limit = [](const Point& p, double limit) {
-    return p.ok() && p.strain_limit() == limit;
-  };
-  std::string text;
-  for (const auto& [name, own] : grouped(plane.points, &Point::contestant)) {
-    if (!roles.of(name).ranked()) continue;
-    double error = unknown, kept = unknown;
-    for (const Point& p : own) {
-      const auto tighter = std::ranges::find_if(
-          own, [&](const Point& q) { return q.step() == p.step() && kept_limit(q, tight); });
-      const double now = p.error_at(headline_error).distance;
-      if (kept_limit(p, loose) && tighter != own.end() && !(error < now)) {
-        error = now;
-        kept = tighter->error_at(headline_error).distance;
-      }
-    }
-    if (!(error > 0) || !std::isfinite(kept)) continue;
-    append(text, quoted(name) + " " + number_text(100 * error, 2) + " % (" +
-                     number_text(100 * std::max(0.0, 1 - kept / error), 2) + " %)");
-  }
-  if (!text.empty())
-    out << "The least error at " << percent(loose)
-        << ", and in brackets how much of it is slack, which a limit of " << percent(tight)
-        << " takes away at the same step: " << text << ". ";
-}
-
-void print_planes(std::ostream& out, const std::vector<json>& sweeps) {
-  if (sweeps.empty()) return;
-  const Runs runs(joined(sweeps));
-  std::vector<Plane> all = planes_of(runs);
-  // Steps of a scene and size that a sweep over strain has too are for figures.
-  const auto same_place = [](const Plane& a, const Plane& b) {
-    return a.scene == b.scene && a.vertices == b.vertices;
-  };
-  std::erase_if(all, [&, planes = all](const Plane& plane) {
-    return std::ranges::none_of(plane.cells, [](const Cell& cell) { return cell.counting(1); }) ||
-           (plane.sweep == "step" && std::ranges::any_of(planes, [&](const Plane& other) {
-              return other.sweep == "strain" && same_place(plane, other);
+// What the page's planes are of: of a scene and size that a sweep over strain has too, steps are
+// for figures.
+std::vector<Plane> shown_planes(const std::vector<json>& sweeps) {
+  const std::vector<Plane> planes = planes_of(Runs(joined(sweeps)));
+  std::vector<Plane> shown;
+  std::ranges::copy_if(planes, std::back_inserter(shown), [&](const Plane& plane) {
+    return std::ranges::any_of(plane.cells, [](const Cell& cell) { return cell.counting(1); }) &&
+           (plane.sweep != "step" || std::ranges::none_of(planes, [&](const Plane& other) {
+              return other.sweep == "strain" && other.scene == plane.scene &&
+                     other.vertices == plane.vertices;
             }));
   });
-  for (const auto& [title, planes] : grouped(all, title_of)) {
-    out << "### " << title << "\n\n";
-    for (const Finding& finding : findings_of(planes))
-      for (const std::string& sentence : finding.sentences) out << sentence << ' ';
-    out << span_of_errors(planes);
-    for (const Plane& plane : planes) {
-      if (plane.sweep == "strain") print_attribution(out, plane);
-      if (plane.scene == "settling_drape") print_slack(out, runs.roles, plane);
-    }
-    out << "\n\n";
-    print_markdown(out, table_of(planes));
-    out << '\n';
-  }
+  return shown;
 }
 
-// Further measurements of a scene, from the fastest run of each ranked contestant.
-struct SceneTable {
-  const char *scene, *title, *unit;
-  std::string (*introduction)(const Point& one, const std::vector<double>& limits);
-  std::string (*cell)(const Point& point);
-};
-
-std::string about_sag(const Point& one, const std::vector<double>& limits) {
-  std::string parabolas;
-  for (const double limit : limits)
-    append(parabolas, plain(1e3 * claims::parabola_sag(one.scene_parameter("side"), limit), 3) +
-                          " mm at " + percent(limit));
-  return "How far the middle of the top row, and that of the lower edge, hang below where they "
-         "would if nothing stretched, mean over the last third of the run, each solver at its best "
-         "step; in brackets how fast it still moves. A top row that uses up its strain and bears "
-         "an even load is a parabola, which sags by " +
-         parabolas;
-}
-
-std::string sag_of(const Point& p) {
-  const auto& sag = p.measures().sag;
-  return plain(1e3 * sag.at("top_row"), 3) + ", " + plain(1e3 * sag.at("lower_edge"), 3) + " (" +
-         plain(p.measures().rest_speed, 2) + ")";
-}
-
-std::string about_slip(const Point&, const std::vector<double>&) {
-  return "How far the garment's rim is below the waist, where it began, mean over the last third "
-         "of the run, of the way to the hips: above 100 % it has slipped past them. In brackets "
-         "the time of computation for a frame of 1/30 s. Each solver at its best step";
-}
-
-std::string slip_text(const Point& p) {
-  const claims::Slip slip = claims::slip_of(p);
-  return plain(50 * (slip.least + slip.most), 3) + " (" + plain(p.seconds() / 30, 2) + ")";
-}
-
-constexpr SceneTable scene_tables[]{
-    {"hung_patch", "Sag of the hung patch", "mm (m/s)", about_sag, sag_of},
-    {"garment", "Slip of the garment", "% (s)", about_slip, slip_text}};
-
-void print_scene(std::ostream& out, const NamedResult& result, const SceneTable& about) {
+// Of scenes whose vertices are marked: how far these hang below where they would if nothing
+// stretched.
+void print_sags(std::ostream& out, const NamedResult& result) {
   const Runs runs(result.document);
   std::vector<Point> fastest;
   std::ranges::copy_if(runs.points, std::back_inserter(fastest), [&](const Point& p) {
-    return p.sweep() == "strain" && p.scene() == about.scene && p.ok() && p.result().best &&
+    return p.sweep() == "strain" && p.ok() && p.result().best && !p.measures().sag.empty() &&
            runs.roles.of(p.contestant()).ranked();
   });
-  if (fastest.empty()) return;
-  std::vector<double> limits = in_order(fastest, [](const Point& p) { return p.strain_limit(); });
-  std::sort(limits.rbegin(), limits.rend());
-  Table table{{"solver"}};
-  for (const double limit : limits) table.head.push_back(percent(limit) + ", " + about.unit);
-  for (const auto& [name, own] : grouped(fastest, &Point::contestant)) {
-    table.rows.push_back({name});
-    for (const double limit : limits) {
-      const auto at = std::ranges::find(own, limit, &Point::strain_limit);
-      table.rows.back().push_back(at == own.end() ? "-" : about.cell(*at));
+  std::ranges::stable_sort(fastest, std::greater(), &Point::strain_limit);
+  for (const auto& [scene, points] : grouped(fastest, &Point::scene)) {
+    std::string marks;
+    for (const auto& [name, sag] : points.front().measures().sag) append(marks, quoted(name));
+    Table table{{"solver"}};
+    const std::vector<double> limits = in_order(points, std::mem_fn(&Point::strain_limit));
+    for (const double limit : limits) table.head.push_back(percent(limit) + ", mm (m/s)");
+    for (const auto& [solver, own] : grouped(points, &Point::contestant)) {
+      auto& row = table.rows.emplace_back(1 + limits.size(), "-");
+      row[0] = solver;
+      for (const Point& p : own) {
+        std::string sags;
+        for (const auto& [name, sag] : p.measures().sag) append(sags, plain(1e3 * sag, 3));
+        row[1 + std::ranges::find(limits, p.strain_limit()) - limits.begin()] =
+            sags + " (" + plain(p.measures().rest_speed, 2) + ")";
+      }
     }
+    print_table(out,
+                "## Sag of " + scene_words(scene) + " (`" + result.name + "`)\n\nHow far " + marks +
+                    " hang below where they would if nothing stretched, mean over the last third "
+                    "of the run, each solver at its best step; in brackets how fast the cloth "
+                    "still moves",
+                table);
   }
-  print_table(out,
-              std::string("## ") + about.title + " (`" + result.name + "`)\n\n" +
-                  about.introduction(fastest.front(), limits),
-              table);
 }
 
 // One row per known answer, from the finest step that each solver finished.
@@ -310,7 +247,7 @@ Table outcomes_in(const json& document) {
 }
 
 Table differences_in(const json& document) {
-  Table table{{"case", "solver", "expected", "ended", "why"}, {}, 2};
+  std::map<std::string, std::map<std::string, std::string>> places;  // by reason, then by ending
   for (const json& cell : document.at("matrix")) {
     if (cell.at("as_expected")) continue;
     std::string reason = "not known: " + cell.at("detail").get<std::string>();
@@ -319,17 +256,18 @@ Table differences_in(const json& document) {
           known.at("solver") == cell.at("solver"))
         reason = known.at("reason").get<std::string>() +
                  "; would fix it: " + known.at("mends").get<std::string>();
-    const std::string fixed = cell.at("at_fixed_step"), outcome = cell.at("outcome");
-    std::vector<std::string> row{
-        cell.at("case"), cell.at("solver"), cell.at("expected_at_fixed_step"),
-        fixed == outcome ? fixed : fixed + ", with smaller steps " + outcome, reason};
-    const auto same = std::ranges::find_if(table.rows, [&row](const auto& other) {
-      return std::equal(row.begin() + 1, row.end(), other.begin() + 1);
-    });
-    if (same == table.rows.end())
-      table.rows.push_back(std::move(row));
-    else
-      same->front() += ", " + row.front();  // a solver's cases that end alike share a row
+    const std::string fixed = cell.at("at_fixed_step"), outcome = cell.at("outcome"),
+                      expected = cell.at("expected_at_fixed_step"),
+                      ending = expected + " -> " + fixed +
+                               (fixed == outcome ? "" : ", with smaller steps " + outcome),
+                      solver = cell.at("solver"), name = cell.at("case");
+    append(places[reason][ending], solver + " in " + name);
+  }
+  Table table{{"why", "expected -> ended: solver in case"}, {}, 0};
+  for (const auto& [reason, endings] : places) {
+    table.rows.push_back({reason, ""});
+    for (const auto& [ending, list] : endings)
+      append(table.rows.back()[1], concat(ending, ": ", list), "; ");
   }
   return table;
 }
@@ -345,17 +283,12 @@ void print_results_page(std::ostream& out, const std::vector<NamedResult>& resul
     if (!is_hard(result)) sweeps.push_back(result.document);
   }
 
+  if (const auto planes = shown_planes(sweeps); !planes.empty()) print_planes(out, planes);
   out << "## The paper's claims (`bench claims` gives each rule)\n\n";
   print_claims_markdown(out, judge_claims(documents));
-  out << "\n## Who is fastest, by strain and error\n\nIn each cell the fastest: its time for one "
-         "simulated second and its step in s; then how many times as long the best of the paper's "
-         "six takes, if it is not of them. Bold: faster than each other one beyond the noise. "
-         "`u`: with untuned settings. Errors are over the scene's size.\n\n";
-  print_planes(out, sweeps);
-  for (const SceneTable& about : scene_tables) {
-    for (const NamedResult& result : results)
-      if (!is_hard(result)) print_scene(out, result, about);
-  }
+  out << '\n';
+  for (const NamedResult& result : results)
+    if (!is_hard(result)) print_sags(out, result);
   for (const NamedResult& result : answers) print_answers(out, result);
   for (const NamedResult& result : results)
     if (is_hard(result)) print_hard_cases(out, result);

@@ -15,7 +15,8 @@ and that line of that file must then contain the text. Generated blocks end with
     <!-- folders of solvers -->                 which folders each folder of solvers/CMakeLists.txt uses
     <!-- gaps PATTERN TIME ... -->              the parts of the gaps of the committed references that match, at these times
     <!-- steps RESULT.json LIMIT STEP ...; ... -->    time and largest error of every contestant at these steps
-    <!-- errors RESULT.json LIMIT CONTESTANT ... STEP ... -->   the errors of these at each fifth of the run
+    <!-- errors RESULT.json LIMIT CONTESTANT ... STEP ... -->   the largest error of these at each step
+    <!-- claims -->                             the verdicts on the paper's claims
     <!-- orders ANSWERS.json NAME ... -->        the orders of convergence of these known answers
     <!-- methods HEADLINE, RESULT.json LIMIT, ... -->   each method's time as published and in its best stepper, within that error
 
@@ -42,7 +43,7 @@ LINK = re.compile(r"\]\(([^)\s]+)\)")
 BACKTICKS = re.compile(r"`([^`\n]+)`")
 PATH = re.compile(r"\.?[\w-][\w./*-]*/[\w./*-]*")
 NAMED_DOCUMENT = re.compile(r"[\w/.-]*\w\.md\b")
-BLOCK = re.compile(r"<!-- (references|bench list|folders of|methods|orders|gaps|steps|errors)([^>:]*?) -->\n\n?.*?<!-- end of list -->", re.DOTALL)
+BLOCK = re.compile(r"<!-- (references|bench list|folders of|methods|orders|gaps|steps|errors|claims)([^>:]*?) -->\n\n?.*?<!-- end of list -->", re.DOTALL)
 SURE = 3  # gaps of a reference
 SOURCES = ("solvers", "harness", "tests", "plots", "cmake", "configs")
 SOURCE_SUFFIXES = {".cpp", ".h", ".py", ".sh", ".cmake", ".txt", ".json"}
@@ -215,21 +216,27 @@ def steps_of(words: str) -> str:
 
 
 def errors_of(words: str) -> str:
-    """In percent of the scene's size, at each fifth of the run; `-` where a run failed or there is none."""
+    """The largest of the whole run in percent of the scene's size, at each step; `-` where a run failed or there is none."""
     file, limit, *rest = words.split()
     contestants, steps = [word for word in rest if word[0].isalpha()], [float(word) for word in rest if not word[0].isalpha()]
-    points = {(p["contestant"], step): p for p in json_of(ROOT / file)["points"] for step in steps
+    errors = {(p["contestant"], step): p["error"]["trajectory"] for p in json_of(ROOT / file)["points"] for step in steps
               if p["strain_limit"] == float(limit) and p["status"] == "ok" and math.isclose(p["step"], step)}
-    fifths = [next(iter(points.values()))["duration"] * i / 5 for i in range(1, 6)]
 
-    def text(point: dict | None, time: float) -> str:
-        return next((f"{100 * e:.2g}" for at, e, *_ in (point["error"]["error_series"] if point else []) if math.isclose(at, time)), "-")
+    def text(error: float | None) -> str:
+        return "-" if error is None else f"{100 * error:.2g}"
 
-    return markdown(["contestant", "step", *(f"{time:g} s" for time in fifths)],
-                    [[f"`{c}`", f"1/{1 / step:g} s", *(text(points.get((c, step)), time) for time in fifths)] for c in contestants for step in steps])
+    return markdown(["contestant", *(f"1/{1 / step:g} s" for step in steps)],
+                    [[f"`{c}`", *(text(errors.get((c, step))) for step in steps)] for c in contestants])
 
 
-BLOCKS = {"references": references, "bench list": table_of, "folders of": folders_of, "methods": methods_of, "orders": orders_of, "gaps": gaps_of, "steps": steps_of, "errors": errors_of}
+def claims_of(words: str) -> str:
+    """The verdict on each of the paper's claims, from all committed results."""
+    files = sorted(str(file) for file in (ROOT / "results").glob("*.json") if file.name != "answers.json")
+    said = re.findall(r"^(C\d+) \((.*?)\): (.*)\n  ([a-z ]+)", bench("claims", *files), re.MULTILINE)
+    return markdown(["", "claim", "verdict"], [[f"{name}, {where}", claim, verdict] for name, where, claim, verdict in said])
+
+
+BLOCKS = {"references": references, "claims": claims_of, "bench list": table_of, "folders of": folders_of, "methods": methods_of, "orders": orders_of, "gaps": gaps_of, "steps": steps_of, "errors": errors_of}
 
 
 def with_tables(text: str) -> str:
@@ -303,7 +310,7 @@ def results_page() -> list[str]:
     if not words or page.replace(" --out docs/results.md\n", "\n") != output_of(*words[1].split()):
         return ["docs/results.md is not what its own command makes"]
     lines = page.count("\n")
-    return [f"docs/results.md has {lines} lines, 300 are to be read"] if lines > 300 else []
+    return [f"docs/results.md has {lines} lines, 200 are to be read"] if lines > 200 else []
 
 
 def pictures() -> list[str]:

@@ -25,7 +25,7 @@ def pictured(folder: Path, frames: list[int], ends: int = 3) -> Path:
                                                   "frames": frames, "legend_end": 4, "legend": [[200, 190, 180], [200, 30, 20]]}))
     for take, rgb in enumerate(((40, 80, 200), (240, 140, 30))):
         for frame in range(3 if take == 0 else ends):
-            Image.new("RGB", (WIDTH, HEIGHT), rgb).save(folder / f"{take}-{frame}.ppm")
+            Image.new("RGB", (WIDTH, HEIGHT), rgb).save(folder / f"{take}-{frame}.png")
     return folder
 
 

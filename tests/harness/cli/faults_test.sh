@@ -63,9 +63,7 @@ done 3<<'TABLE'
 answers --answer catenary_place --solver shake --no-plots --force --out old.json
 baseline given.json --out old.json
 results given.json --out old.md
-compare given.json given.json --junit old.xml
 film --scene chain --set n=5 --set duration=0.1 --width 16 --out old.png
-film --scene chain --set n=5 --set duration=0.1 --out old.pc2
 report given.json --out old.html
 TABLE
 finish

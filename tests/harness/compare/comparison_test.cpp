@@ -200,15 +200,6 @@ TEST(Gate, IsReadAndRefusedByName) {
   EXPECT_TRUE(gate.errors.empty());
 }
 
-TEST(Reports, JUnitEscapes) {
-  const Comparison comparison{
-      {{Change::newly_failing, "strain", "chain/a/h:1", {"edge <3> & \"more\" | \x01 `x`\nend"}}},
-      {}};
-  const std::string xml = junit_xml(comparison, "bench <compare>");
-  EXPECT_NE(xml.find("name=\"bench &lt;compare&gt;\""), std::string::npos);
-  EXPECT_NE(xml.find("edge &lt;3&gt; &amp; &quot;more&quot; | ? `x`&#10;end"), std::string::npos);
-}
-
 // ---- Interleaved pairs ----
 
 using nlohmann::json;

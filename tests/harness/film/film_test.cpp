@@ -1,4 +1,4 @@
-// Films: which runs are flagged, that every run ends, and a pixel of cloth.
+// Films: which runs are flagged, and that every run ends.
 #include "harness/film/film.h"
 
 #include <gtest/gtest.h>
@@ -37,20 +37,6 @@ TEST(Films, EndRunsWhoseStepsTakeTooMuchWork) {
       filmed("chain", {{"n", 80}}, {"jacobi", "jacobi", {{"max_iterations", 1e9}}}, 1e-8, 0.01);
   EXPECT_NE(take.detail.find("iterations for"), std::string::npos) << take.detail;
   EXPECT_LT(take.frames.size(), 33U);
-}
-
-TEST(Pictures, ShowFlatCloth) {
-  constexpr int width = 96;
-  Recording recording;
-  recording.scene = built_scene("drape", {{"n", 12}});
-  FilmRun take;
-  take.strain_limit = 0.01;
-  take.frames = {recording.scene.start.x};
-  recording.takes = {take};
-  const View view = view_of(recording, {0});
-  const Pixels pixels = trace(shot_of(recording, view, 0, 0, width), view, width, 2);
-  const auto middle = static_cast<std::size_t>(pixels.height / 2 * width + width / 2);
-  EXPECT_LT(pixels.rgb[3 * middle + 2], 235) << "cloth, not the background";
 }
 
 }  // namespace
