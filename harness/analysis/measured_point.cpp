@@ -146,7 +146,9 @@ std::string scene_words(const std::string& scene) {
   const std::size_t begin = scene.find(':') + 1;  // of "mesh:" or "folder:"
   if (begin == 0) return scene;
   const std::string file = scene.substr(begin, scene.find(',') - begin);
-  return file.substr(file.find_last_of('/') + 1);
+  const std::size_t content = scene.find("content=");
+  return file.substr(file.find_last_of('/') + 1) +
+         (content == std::string::npos ? "" : " (" + scene.substr(content + 8, 4) + ")");
 }
 
 std::string percent(double fraction) { return number_text(100 * fraction, 3) + " %"; }

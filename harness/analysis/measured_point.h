@@ -109,7 +109,8 @@ auto grouped(const Items& items, Key key) {
   return groups;
 }
 
-// A scene made of files goes by the last name: "shirt.obj" for "mesh:clothes/shirt.obj,pins=y>1.2".
+// A scene made of files goes by the first one's name and four digits of the hash of them all:
+// "shirt.obj (1c3f)" for "mesh:clothes/shirt.obj,pins=y>1.2,content=1c3f...".
 std::string scene_words(const std::string& scene);
 std::string percent(double fraction);    // "1.2 %"
 std::string time_words(double seconds);  // "1.23 s", "41.3 ms", "0.51 ms"

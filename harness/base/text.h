@@ -20,6 +20,12 @@ std::string concat(const Parts&... parts) {
   return text.str();
 }
 
+// "1 face", "2 faces".
+template <class Number>
+std::string counted(Number count, const std::string& one, const std::string& many = "") {
+  return concat(count, ' ', count == 1 ? one : many.empty() ? one + "s" : many);
+}
+
 // With this many significant digits and no trailing zeros; six is the default of streams.
 std::string number_text(double value, int digits = 6);
 

@@ -119,6 +119,7 @@ Action verb(const Command& command) {
        "search the settings of each solver, by one rule, on scenes that no result reports")       \
   VERB(reference, false, "compute the trajectories that errors are measured against")             \
   VERB(export, false, "write a scene as files for other programs: OBJ, JSON and NumPy arrays")    \
+  VERB(mesh, false, "describe and draw a mesh of your own, and what becomes of it as cloth")      \
   VERB(judge, false, "judge the motion that another program made of an exported scene")           \
   VERB(point, false, "run single points, given as JSON on standard input, one a line")            \
   VERB(list, false, "print what there is: solvers, scenes, suites, verbs, cases and more")
@@ -144,6 +145,7 @@ struct SceneOptions {
   Words body, body_then;
   int least_n = 2;  // of --n
 
+  // standard: the default that the help names; "": the scene is a mesh as it is.
   void declare(const Command& to, const std::string& standard);
   std::string name() const;                     // with what belongs to a mesh
   SceneParameters given_parameters() const;     // from --set

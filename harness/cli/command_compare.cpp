@@ -81,7 +81,7 @@ struct Baseline {
                        "' comes from an interrupted run and cannot be a baseline");
     check_writable(out);
     write_atomically(out, document_text(baseline_document(result)));
-    std::cout << out << ": " << result.points.size() << " points" << std::endl;
+    std::cout << out << ": " << counted(result.points.size(), "point") << std::endl;
     return success;
   }
 };
@@ -235,7 +235,7 @@ struct Ab : CompareOptions {
     const std::string old_print = run_one(before, points.front()).fingerprint;
     if (old_print.empty() || old_print != run_one(after, points.front()).fingerprint)
       can.no_counters = "compiler, flags or libraries differ";
-    std::cerr << points.size() << " points, " << pairs << " pairs each ..." << std::endl;
+    std::cerr << counted(points.size(), "point") << ", " << pairs << " pairs each ..." << std::endl;
     Comparison comparison =
         compare_in_pairs(std::move(points), pairs, confirming, passes, can,
                          [this](Side side, const PairedPoint& point) {

@@ -128,6 +128,29 @@ void print_rows(const json& rows) {
   }
 }
 
+struct MeshVerb : SceneOptions {
+  std::string file;
+
+  void declare(const Command& command) {
+    command.option("file", file, "the mesh", "FILE.obj");
+    command.require({"file"});
+    SceneOptions::declare(command, "");
+  }
+
+  int run() {
+    scene = "mesh:" + file;
+    try {
+      std::cout << find_scene(name())->description;
+    } catch (const UnusableMesh& error) {
+      std::cout << error.description << std::flush;
+      if (!error.falls) throw;
+      std::cout
+          << "  a scene once it is held: --pins 'y > ...', --floor HEIGHT or --collider FILE\n";
+    }
+    return success;
+  }
+};
+
 struct ListVerb {
   std::string what;
   bool as_json = false;
@@ -171,6 +194,7 @@ struct ListVerb {
 
 }  // namespace
 
+Action mesh_verb(const Command& command) { return verb<MeshVerb>(command); }
 Action list_verb(const Command& command) { return verb<ListVerb>(command); }
 
 }  // namespace harness

@@ -1,9 +1,11 @@
 // bench --sweep strain|resolution|step|stability, and the sweeps of a suite.
+#include <set>
 
 #include "harness/base/timing_lock.h"
 #include "harness/cli/command.h"
 #include "harness/judge/reference_routes.h"
 #include "harness/points/context.h"
+#include "harness/points/plugins.h"
 #include "harness/points/result_file.h"
 #include "harness/run/machine_noise.h"
 #include "harness/stability/stability.h"
@@ -41,8 +43,7 @@ SweepEvents shown(Progress& progress) {
   events.point = [&progress, points = 0](const PointResult& p, std::size_t s,
                                          std::size_t all) mutable {
     progress.show(
-        (static_cast<double>(s) + 0.5) / static_cast<double>(all),
-        std::to_string(++points) + " points",
+        (static_cast<double>(s) + 0.5) / static_cast<double>(all), counted(++points, "point"),
         p.spec.id() + " " + (p.ok() ? duration_text(p.seconds()) + "/s" : to_string(p.status)));
   };
   events.repetition = [&progress, first = true](std::size_t done, std::size_t all) mutable {
@@ -84,10 +85,31 @@ struct SweepCommand : SweepOptions, OutputOptions {
     for (const Search& search : searches) most += search.ladder.size();
     for (const SweepSpec& sweep : suite.sweeps) std::cout << find_scene(sweep.scene)->description;
     const Estimate guess = estimate(suite, searches);
-    std::cout << searches.size() << " searches for a best step, at most " << most
-              << " points (usually half of them), about " << duration_text(guess.seconds)
-              << ", estimated from a few steps of " << guess.timed << " contestants and sizes\n";
+    std::cout << counted(searches.size(), "search", "searches") << " for a best step, at most "
+              << counted(most, "point") << " (usually half of them), about "
+              << duration_text(guess.seconds) << ", estimated from a few steps of "
+              << counted(guess.timed, "contestant and size", "contestants and sizes") << '\n';
     return success;
+  }
+
+  // Scenes that a plug-in's solver, or one that is asked for, cannot run.
+  void report_left_out(const Suite& suite) const {
+    std::set<std::string> wanted;
+    for (const Plugin& plugin : loaded_plugins())
+      wanted.insert(plugin.solvers.begin(), plugin.solvers.end());
+    std::string all;
+    for (const SweepSpec& sweep : suite.sweeps)
+      for (const auto& backend : backends()) {
+        const auto asked = filters_of(*this).solver;
+        if (asked ? !matches(*asked, backend.name) : !wanted.contains(backend.name)) continue;
+        if (std::ranges::count(sweep.contestants, backend.name, &Contestant::solver) > 0) continue;
+        const auto type = find_scene(sweep.scene);
+        const std::string part = not_taken(backend, *type, sweep.scene_parameters);
+        const std::string one = concat(sweep.scene, " by ", backend.name, " (", part, ")");
+        if (!part.empty() && all.find(one) == std::string::npos) append(all, one);
+      }
+    if (!all.empty())
+      std::cerr << "bench: left out for what a solver does not take: " << all << '\n';
   }
 
   void report_missing_references(const std::vector<Search>& searches,
@@ -121,6 +143,7 @@ struct SweepCommand : SweepOptions, OutputOptions {
   int run_suite(const Words& typed) const {
     const Suite suite = load_suite(*this);
     const auto searches = plan(suite, filters_of(*this));
+    report_left_out(suite);
     if (dry_run) return print_plan(suite, searches);
     json context = context_of_suite();
     const auto run = [&](Journal& journal, const json& before) -> Finished {

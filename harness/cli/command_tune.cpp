@@ -110,8 +110,8 @@ struct Tune {
     const bool there = known != entries.end() && rule_change(*known).empty();
     if (own_places()) {
       if (!there)
-        throw UsageError(name + " has no settings by today's rule yet: bench tune --scene " +
-                         on.scene + " --solver " + name);
+        throw UsageError(
+            name + " has no settings by today's rule yet: " + tune_command(on.scene, name, out));
       const TunedEntry found = tune_solver(name, on, options, run, &*known);
       print(found);
       add_places(*known, found.places);

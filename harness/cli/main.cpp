@@ -1,6 +1,8 @@
 // bench: the command line. Only this file includes CLI11, which takes ten seconds to compile.
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 
 #include "harness/base/child_process.h"
 #include "harness/cli/command.h"
@@ -135,7 +137,10 @@ int guarded(const std::function<int()>& work) {
   } catch (const Interrupted&) {
     return failed("interrupted", interrupted_exit);
   } catch (const FileError& error) {
-    return failed(error.what(), internal_error);
+    // Files larger than the user permits (ulimit -f) are the user's mistake.
+    const bool too_large =
+        std::string(error.what()).find(std::strerror(EFBIG)) != std::string::npos;
+    return failed(error.what(), too_large ? usage_error : internal_error);
   } catch (const std::exception& error) {
     return failed(std::string("internal error: ") + error.what(), internal_error);
   }

@@ -5,13 +5,15 @@
 namespace harness {
 
 void SceneOptions::declare(const Command& to, const std::string& standard) {
-  to.option("--scene", scene,
-            "one of `bench list scenes`, mesh:FILE.obj, or a folder of bench export; default: " +
-                standard,
-            "SCENE");
-  to.option("--n", n, "size of the scene; a resolution sweep takes several, e.g. 20,40,80", "N",
-            Bounds::whole_number(least_n));
-  to.repeatable("--set", set, "a parameter of the scene; repeatable", "NAME=NUMBER");
+  if (!standard.empty()) {
+    to.option("--scene", scene,
+              "one of `bench list scenes`, mesh:FILE.obj, or a folder of bench export; default: " +
+                  standard,
+              "SCENE");
+    to.option("--n", n, "size of the scene; a resolution sweep takes several, e.g. 20,40,80", "N",
+              Bounds::whole_number(least_n));
+    to.repeatable("--set", set, "a parameter of the scene; repeatable", "NAME=NUMBER");
+  }
   const auto part = [&](const std::string& name, const std::string& help, const char* type) {
     to.option("--" + name, mesh[name], "of mesh:FILE.obj: " + help, type);
   };
@@ -239,7 +241,9 @@ Suite load_suite(const SweepOptions& given) {
     for (SweepSpec& sweep : suite.sweeps) sweep.every_step = true;
     suite.name += "-all";  // separate files and figures
   }
-  if (options.reps > 0) suite.reps = options.reps;
+  if (options.untimed && options.reps > 1)
+    throw UsageError("--reps and --untimed exclude each other: without times one run is enough");
+  if (options.reps > 0 || options.untimed) suite.reps = std::max(options.reps, 1);
   if (options.finest > 0) cut_ladders(suite, options.finest);
   if (options.timeout > 0) suite.timeout = options.timeout;
   // Meaningless times must not stop a run for being slower than another contestant's.

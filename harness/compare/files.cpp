@@ -30,11 +30,10 @@ json read_any(const std::string& path) {
   return document;
 }
 
-bool searched(const json& suite, const ComparedPoint& point) {
-  if (point.sweep == "step") return false;
-  const std::string scene = point.id.substr(0, point.id.find('/'));
+bool searched(const json& suite, const json& point) {
+  if (point.at("sweep") == "step") return false;
   for (const json& sweep : suite.at("sweeps")) {
-    if (sweep.at("sweep") != point.sweep || sweep.at("scene") != scene) continue;
+    if (sweep.at("sweep") != point.at("sweep") || sweep.at("scene") != point.at("scene")) continue;
     if (sweep.value("steps", json::object()).value("all", false)) return false;
   }
   return true;
@@ -53,7 +52,7 @@ void add_file(ComparedResult& to, const json& document, const std::string& path)
   const json& context = document.at("context");
   for (const json& entry : document.at("points")) {
     to.points.push_back(compared_point(entry));
-    to.points.back().searched = searched(context.at("suite"), to.points.back());
+    to.points.back().searched = searched(context.at("suite"), entry);
   }
   to.complete = to.complete && document.value("complete", true);
   to.baseline = to.baseline || document.at("schema") == baseline_schema;
@@ -173,7 +172,7 @@ std::string counts(const Comparison& comparison) {
   for (std::size_t i = 0; i < change_names.size(); ++i)
     if (const std::size_t n = comparison.count(static_cast<Change>(i)); n > 0)
       append(text, std::to_string(n) + " " + change_names[i]);
-  return std::to_string(comparison.points.size()) + " points: " + text;
+  return counted(comparison.points.size(), "point") + ": " + text;
 }
 
 // Points with too few runs to decide on their times share one note.

@@ -106,12 +106,16 @@ Settings Contestant::settings_for(int resolution, double limit) const {
   return all;
 }
 
+std::string not_taken(const Backend& solver, const SceneType& type, const SceneParameters& given) {
+  const char* part = part_not_taken(solver, small_problem(type, given));
+  return part ? part : "";
+}
+
 Contestants competitors(const SceneType& type, const SceneParameters& given) {
-  const Problem& problem = small_problem(type, given);
   Contestants all;
   for (const auto& backend : backends()) {
     const bool another = type.kind() == "chain" && *backend.same_on_chains;
-    if (backend.contestant && !another && !part_not_taken(backend, problem))
+    if (backend.contestant && !another && not_taken(backend, type, given).empty())
       all.push_back({backend.name, backend.name});
   }
   return all;

@@ -42,6 +42,8 @@ Contestants read_contestants(const json& solvers, const std::string& where);
 // The solvers of a suite that names none: all that compete and support every part of the scene. On
 // a chain, a solver that coincides with another one there is left out.
 Contestants competitors(const SceneType& type, const SceneParameters& given);
+// What of the scene the solver does not take; "": nothing.
+std::string not_taken(const Backend& solver, const SceneType& type, const SceneParameters& given);
 // Throws unless the solver accepts them.
 void check_settings(const Settings& settings, const std::string& where, const Backend& backend);
 // Throws unless it consists of a-z, 0-9 and _, and one @ at most, for a method in a time stepper.

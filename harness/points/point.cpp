@@ -5,7 +5,10 @@
 namespace harness {
 
 std::string PointSpec::id() const {
-  return scene + '/' + contestant + "/n:" + std::to_string(vertices) +
+  std::string name;  // files go without their folders: that they differ is in their content's hash
+  for (const char c : scene)
+    c == '/' ? name.resize(name.find_last_of(":=;,") + 1) : name.push_back(c);
+  return name + '/' + contestant + "/n:" + std::to_string(vertices) +
          "/strain:" + number_text(strain_limit) + "/h:" + number_text(step);
 }
 

@@ -3,6 +3,7 @@
 #include "harness/base/files.h"
 #include "harness/base/text.h"
 #include "harness/points/context.h"
+#include "harness/points/plugins.h"
 #include "harness/points/schema.h"
 
 namespace harness {
@@ -124,16 +125,25 @@ std::string rule_change(const TunedEntry& entry) {
   return difference(entry.rule, tuning_rule(*scene, *find_backend(entry.solver)));
 }
 
+std::string tune_command(const std::string& kind, const std::string& solver,
+                         const std::string& file) {
+  const bool plugged = std::ranges::any_of(loaded_plugins(), [&](const Plugin& plugin) {
+    return std::ranges::find(plugin.solvers, solver) != plugin.solvers.end();
+  });
+  return "bench tune --scene " + kind + " --solver " + solver + (plugged ? " --plugin FILE" : "") +
+         (file.empty() ? "" : " -o " + file);
+}
+
 Tuned read_tuned_up_to_date(const std::string& file) {
   const bool path = file.find('/') != std::string::npos;
   Tuned tuned = parse_tuned(
       read_file(path ? file : source_path("configs/" + file), "file of tuned settings"), file);
   for (const TunedEntry& entry : tuned.entries)
     if (const std::string change = rule_change(entry); !change.empty())
-      throw UsageError("tuned settings '" + tuned.file + "': those of " + entry.solver +
-                       " for the " + entry.kind + " were found by another rule: " + change +
-                       "; search again: bench tune --scene " + entry.kind + " --solver " +
-                       entry.solver);
+      throw UsageError(
+          "tuned settings '" + tuned.file + "': those of " + entry.solver + " for the " +
+          entry.kind + " were found by another rule: " + change +
+          "; search again: " + tune_command(entry.kind, entry.solver, path ? file : ""));
   return tuned;
 }
 

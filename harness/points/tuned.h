@@ -59,6 +59,10 @@ std::vector<int> smaller_sizes(const std::string& scene);
 // sizes, limits, ladder and level of error, and the solver's settings, their defaults and ranges.
 json tuning_rule(const SweepSpec& scene, const Backend& solver);
 
+// The command that searches again. file: of settings of one's own, or "".
+std::string tune_command(const std::string& kind, const std::string& solver,
+                         const std::string& file);
+
 // The first difference between the rule that an entry was found by and today's; "": there is none.
 std::string rule_change(const TunedEntry& entry);
 // "tuned.json" is looked for in configs/, a path with a slash from where the program runs. Throws

@@ -10,19 +10,23 @@ namespace inextensible::python {
 
 namespace py = pybind11;
 
+inline py::object read_only(py::object array) {
+  array.attr("flags").attr("writeable") = false;
+  return array;
+}
+
 // A view; None where there is nothing. Without an owner, which it keeps alive, it must not be used
 // for longer than the memory lives.
 template <class Number>
 py::object view(const Number* data, std::vector<py::ssize_t> shape, bool writeable = false,
                 const py::object& owner = py::none()) {
   if (!data || shape[0] == 0) return py::none();
-  py::array_t<Number> array(std::move(shape), data, owner);
-  if (!writeable) array.attr("flags").attr("writeable") = false;
-  return array;
+  const py::object array = py::array_t<Number>(std::move(shape), data, owner);
+  return writeable ? array : read_only(array);
 }
 
-// The attributes `scene` of a solver: views that live as long as the scene's arrays, and copies of
-// x and v, which need not.
+// The attributes `scene` of a solver, read-only: views that live as long as the scene's arrays, and
+// copies of x and v, which need not.
 inline py::object scene_views(const InextensibleScene& s, const py::object& owner = py::none()) {
   py::dict d;
   const auto rows = [&owner](const auto* data, std::int32_t count, std::int32_t columns) {
@@ -32,7 +36,7 @@ inline py::object scene_views(const InextensibleScene& s, const py::object& owne
     return view(data, {count}, false, owner);
   };
   const auto copy = [](const py::object& array) {
-    return array.is_none() ? array : py::object(array.attr("copy")());
+    return array.is_none() ? array : read_only(array.attr("copy")());
   };
   d["vertices"] = s.vertices;
   d["gravity"] = copy(numbers(s.gravity, 3));
@@ -40,7 +44,7 @@ inline py::object scene_views(const InextensibleScene& s, const py::object& owne
   py::array_t<double> inverse_mass(s.vertices);  // 0: pinned
   for (std::int32_t i = 0; i < s.vertices; ++i)
     inverse_mass.mutable_at(i) = s.mass[i] > 0 ? 1 / s.mass[i] : 0;
-  d["inverse_mass"] = inverse_mass;
+  d["inverse_mass"] = read_only(inverse_mass);
   d["x"] = copy(rows(s.x, s.vertices, 3));
   d["v"] = copy(rows(s.v, s.vertices, 3));
   d["edges"] = rows(s.edge, s.edges, 2);

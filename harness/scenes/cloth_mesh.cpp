@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <set>
 
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
+#include "solvers/problem/closed_surface.h"
 
 namespace harness {
 namespace {
@@ -291,25 +291,10 @@ inextensible::Bending hinges_of(const ClothMesh& mesh, double rigidity) {
 }  // namespace
 
 std::vector<int> pieces_of(const ClothMesh& mesh) {
-  std::vector<int> root(mesh.vertices.size());
-  std::iota(root.begin(), root.end(), 0);
-  const auto root_of = [&](int v) {
-    while (root[v] != v) v = root[v] = root[root[v]];
-    return v;
-  };
-  const auto join = [&](const auto& faces) {
-    for (const auto& face : faces)
-      for (const int v : face) root[root_of(v)] = root_of(face[0]);
-  };
-  join(mesh.quads);
-  join(mesh.triangles);
-  join(mesh.ropes);
-  std::map<int, int> number;
-  std::vector<int> piece;
-  piece.reserve(root.size());
-  for (int v = 0; v < static_cast<int>(root.size()); ++v)
-    piece.push_back(number.try_emplace(root_of(v), static_cast<int>(number.size())).first->second);
-  return piece;
+  std::vector<std::array<int, 3>> joined = mesh.triangles;
+  for (const auto& [a, b, c, d] : mesh.quads) joined.insert(joined.end(), {{a, b, c}, {a, c, d}});
+  for (const auto& [a, b] : mesh.ropes) joined.push_back({a, b, b});
+  return inextensible::pieces_of(mesh.vertices.size(), joined);
 }
 
 ClothMesh cloth_of(const MeshFile& file, bool triangles_only) {

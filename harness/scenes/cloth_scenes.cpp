@@ -113,15 +113,7 @@ Scene build_block(const SceneParameters& p) {
   const double way = p.at("speed") * p.at("speed") / (2 * p.at("friction") * p.at("gravity"));
   const double wide = p.at("side") + 2 * way, deep = p.at("side");
   inextensible::TriangleMesh box;
-  for (const double y : {-deep, 0.0})
-    for (const auto& [x, z] : {std::pair(-wide, -wide), {wide, -wide}, {wide, wide}, {-wide, wide}})
-      box.vertices.emplace_back(x, y, z);
-  box.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 6, 5}, {4, 7, 6}};
-  for (int i = 0; i < 4; ++i) {
-    const int j = (i + 1) % 4;
-    box.triangles.push_back({i, 4 + i, 4 + j});
-    box.triangles.push_back({i, 4 + j, j});
-  }
+  add_block(box, {-wide, -deep, -wide}, {wide, 0, wide});
   cloth.parts.collider =
       std::make_shared<const inextensible::TriangleCollider>(std::move(box), p.at("friction"));
   return finished(std::move(cloth));

@@ -1,13 +1,11 @@
 // Cloth from files.
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <functional>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -125,11 +123,12 @@ inextensible::TriangleMesh body_of(const MeshFile& file) {
   }
   const inextensible::TriangleSides sides = inextensible::sides_of(body.triangles);
   if (sides.faces != 2)
-    throw UsageError(concat("'", file.path,
-                            "' is not a body to collide with: the side between vertices ",
-                            sides.a + 1, " and ", sides.b + 1, " has ", sides.faces,
-                            sides.faces == 1 ? " face" : " faces", ", a closed surface has 2",
-                            sides.faces == 1 ? "; if corners are doubled, --weld 1e-6" : ""));
+    throw UsageError(concat(
+        "'", file.path, "' is not a body to collide with: the side between vertices ", sides.a + 1,
+        " and ", sides.b + 1, " has ", counted(sides.faces, "face"), ", a closed surface has 2",
+        sides.faces == 1
+            ? "; --weld 1e-6 joins doubled corners, --thickness DISTANCE closes an open surface"
+            : ""));
   const auto first = [&](int side) { return body.triangles[side / 3][side % 3]; };
   std::vector<char> known(body.triangles.size(), 0), turned = known;  // against the piece's first
   for (int seed = 0; seed < std::ssize(known); ++seed) {
@@ -182,23 +181,15 @@ MeshFile thickened(MeshFile file, double thickness) {
   return file;
 }
 
-// The rigid motion that takes a body to its shape in another file (Kabsch 1976).
+// The rigid motion that takes a body to its shape in another file (Umeyama 1991).
 inextensible::Pose pose_between(const MeshFile& body, const MeshFile& there) {
   if (body.vertices.size() != there.vertices.size())
     throw UsageError("'" + there.path + "' has other vertices than '" + body.path + "'");
-  const auto centre = [](const MeshFile& file) -> Eigen::Vector3d {
-    return std::reduce(file.vertices.begin(), file.vertices.end(), Eigen::Vector3d(0, 0, 0)) /
-           static_cast<double>(file.vertices.size());
+  const auto points = [n = std::ssize(body.vertices)](const MeshFile& file) {
+    return Eigen::Map<const Positions>(file.vertices.data()->data(), 3, n);
   };
-  const Eigen::Vector3d from = centre(body), to = centre(there);
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (std::size_t v = 0; v < body.vertices.size(); ++v)
-    spread += (there.vertices[v] - to) * (body.vertices[v] - from).transpose();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(spread, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() > 0 ? 1 : -1;
-  const Eigen::Vector3d reflect(1, 1, sign);
-  const Eigen::Matrix3d turn = svd.matrixU() * reflect.asDiagonal() * svd.matrixV().transpose();
-  inextensible::Pose pose{turn, to - turn * from};
+  const Eigen::Matrix4d motion = Eigen::umeyama(points(body), points(there), false);
+  const inextensible::Pose pose{motion.topLeftCorner<3, 3>(), motion.topRightCorner<3, 1>()};
   for (std::size_t v = 0; v < body.vertices.size(); ++v)
     if ((pose(body.vertices[v]) - there.vertices[v]).norm() >
         1e-4 * there.vertices[v].norm() + 1e-6)
@@ -216,30 +207,32 @@ Eigen::AlignedBox3d box_of(const std::vector<Eigen::Vector3d>& points) {
 // Throws UsageError for cloth that falls apart or cannot move.
 void check_cloth(const std::string& path, MeshFile file, const ClothMesh& cloth, bool has_body,
                  bool welded) {
-  const int constraints = count_cloth(cloth).second;
   if (std::ranges::all_of(cloth.held, std::identity{}))
     throw UsageError("'" + path + "': all vertices are pinned, nothing can move");
-  if (constraints == 0)
-    throw UsageError(
-        concat("'", path, "': no side of its ", cloth.quads.size() + cloth.triangles.size(),
-               " faces is constrained, since triangles that make no quads are springs: there "
-               "is nothing to compare"));
   const std::vector<int> piece = pieces_of(cloth);
   const int pieces = 1 + *std::ranges::max_element(piece);
   std::set<int> held;
   for (std::size_t v = 0; v < piece.size(); ++v)
     if (cloth.held[v]) held.insert(piece[v]);
   const int loose = pieces - static_cast<int>(held.size());
-  if (pieces == 1 || (has_body && welded) || loose == 0) return;
-  weld(file, 1e-6 * box_of(cloth.vertices).diagonal().norm());
-  const std::vector<int> joined = pieces_of(cloth_of(file));
-  const bool doubled = *std::ranges::max_element(joined) + 1 < pieces;
-  if (has_body && !doubled) return;
-  throw UsageError("'" + path + "' is in " + std::to_string(pieces) + " pieces, " +
-                   std::to_string(loose) + " of them pinned nowhere" +
-                   (doubled ? "; corners lie on each other: --weld 1e-6 joins them" +
-                                  std::string(has_body ? ", --weld 0 leaves them apart" : "")
-                            : ""));
+  if (pieces > 1 && !(has_body && welded) && loose > 0) {
+    weld(file, 1e-6 * box_of(cloth.vertices).diagonal().norm());
+    const std::vector<int> joined = pieces_of(cloth_of(file));
+    const bool doubled = *std::ranges::max_element(joined) + 1 < pieces;
+    const auto free = std::ranges::find_if(piece, [&](int of) { return !held.contains(of); });
+    if (!has_body || doubled)
+      throw UsageError(concat(
+          "'", path, "' is in ", pieces, " pieces, ", loose, " of them pinned nowhere",
+          cloth.medial ? ""
+                       : concat(", as that of vertex ", cloth.in_file[free - piece.begin()] + 1),
+          doubled ? "; corners lie on each other: --weld 1e-6 joins them" : "",
+          doubled && has_body ? ", --weld 0 leaves them apart" : ""));
+  }
+  if (count_cloth(cloth).second == 0)
+    throw UsageError(concat("'", path, "': no side of its ",
+                            counted(cloth.quads.size() + cloth.triangles.size(), "face"),
+                            " is constrained, since triangles that make no quads are springs: "
+                            "there is nothing to compare"));
 }
 
 // How deep points are in a body: its deepest, and how many are in it.
@@ -323,14 +316,14 @@ std::optional<double> number_of(const std::map<std::string, std::string>& parts,
 }
 
 // What is left out, or other than its exporter may have meant, for people.
-std::string remarks_of(const MeshFile& file) {
+std::string remarks_of(const MeshFile& file, std::size_t distinct) {
   std::set<int> of_faces;
   for (const MeshFile::Face& face : file.faces)
     of_faces.insert(face.corners.begin(), face.corners.end());
   const auto threads = std::ranges::count_if(file.ropes, [&](const auto& ends) {
     return of_faces.contains(ends[0]) && of_faces.contains(ends[1]);
   });
-  const std::size_t doubled = file.faces.size() - distinct_faces(file).size();
+  const std::size_t doubled = file.faces.size() - distinct;
   std::string text;
   if (file.sewn > 0)
     text += concat("  sewing lines: ", file.sewn, " without length, their ends are one vertex\n");
@@ -341,37 +334,85 @@ std::string remarks_of(const MeshFile& file) {
   return text;
 }
 
+// The sides of body and cloth in characters, seen along the axis along which they are thinnest.
+std::string sketch_of(const MeshModel& model) {
+  const std::vector<Eigen::Vector3d>& cloth = model.start.vertices;
+  Eigen::AlignedBox3d box = box_of(cloth);
+  for (const Eigen::Vector3d& corner : model.body.vertices) box.extend(corner);
+  int depth = 2;
+  for (const int axis : {1, 0})
+    if (box.sizes()[axis] < box.sizes()[depth]) depth = axis;
+  const int across = depth == 0 ? 2 : 0, down = depth == 1 ? 2 : 1;
+  // A column's width; rows are twice as high.
+  const double cell = std::max({box.sizes()[across] / 59, box.sizes()[down] / 22, 1e-9});
+  const auto cells = [&](double length) { return std::lround(length / cell); };
+  std::vector<std::string> rows(1 + cells(box.sizes()[down] / 2),
+                                std::string(1 + cells(box.sizes()[across]), ' '));
+  const auto dot = [&](const Eigen::Vector3d& x, char mark) {
+    const double below = down == 1 ? box.max().y() - x.y() : x.z() - box.min().z();
+    rows[cells(below / 2)][cells(x[across] - box.min()[across])] = mark;
+  };
+  const auto draw = [&](const std::vector<Eigen::Vector3d>& x, const auto& faces, char mark) {
+    for (const auto& face : faces)
+      for (std::size_t k = 0; k < face.size(); ++k) {
+        const Eigen::Vector3d &a = x[face[k]], way = x[face[(k + 1) % face.size()]] - a;
+        const long parts = 1 + cells(2 * way.norm());
+        for (long i = 0; i < parts; ++i)
+          dot(a + static_cast<double>(i) / static_cast<double>(parts) * way, mark);
+      }
+  };
+  draw(model.body.vertices, model.body.triangles, ':');
+  draw(cloth, model.start.quads, '.');
+  draw(cloth, model.start.triangles, '.');
+  draw(cloth, model.start.ropes, '.');
+  for (const Eigen::Vector3d& x : cloth) {
+    if (model.loaded && model.loaded(x)) dot(x, 'w');
+    if (model.pinned && model.pinned(x)) dot(x, 'o');
+  }
+  std::string text = concat("  seen along ", "xyz"[depth], ": o pinned, w loaded, : body\n");
+  for (const std::string& row : rows)
+    text += "    " + row.substr(0, row.find_last_not_of(' ') + 1) + "\n";
+  return text;
+}
+
 // What was read, and what becomes of it, for people.
-std::string description_of(const MeshModel& model, const MeshFile& file, const ClothMesh& cloth) {
+std::string description_of(const MeshModel& model, const MeshFile& file, const ClothMesh& cloth,
+                           const std::vector<MeshFile::Face>& distinct) {
   const std::vector<int> piece = pieces_of(cloth);
-  const Eigen::AlignedBox3d box = box_of(model.start.vertices);
-  const Eigen::Vector3d sizes = box.sizes();
+  const Eigen::Vector3d sizes = box_of(model.start.vertices).sizes();
   const double largest = sizes.maxCoeff();
-  std::string text = concat("'", file.path, "': ", file.vertices.size(), " vertices, ",
-                            file.faces.size(), " faces, ", file.ropes.size(), " links of lines; ",
-                            1 + *std::ranges::max_element(piece), " piece(s)\n");
+  std::string text =
+      concat("'", file.path, "': ", counted(file.vertices.size(), "vertex", "vertices"), ", ",
+             counted(file.faces.size(), "face"), ", ", counted(file.ropes.size(), "link"),
+             " of lines; ", counted(1 + *std::ranges::max_element(piece), "piece"), "\n");
   text += concat("  unit: ", sizes.x(), " x ", sizes.y(), " x ", sizes.z(), " m, if --set scale=1",
                  largest > 20     ? "; that is large: centimetres would be scale=0.01\n"
                  : largest < 0.02 ? "; that is small: check the unit\n"
                                   : "\n");
-  if (cloth.medial)
-    text += concat("  ", cloth.triangles.size(), " triangles, by the midpoints of their sides\n");
-  else
-    text += concat("  warp and weft: the sides of ", cloth.quads.size(), " quads, of which ",
-                   cloth.quads.size() -
-                       static_cast<std::size_t>(std::ranges::count_if(
-                           file.faces, [](const auto& face) { return face.corners.size() == 4; })),
-                   " are two triangles; the other ", cloth.triangles.size(),
-                   " triangles are held by springs\n");
-  if (!cloth.along_u.empty()) text += "  warp runs along the texture's u, and weft along its v\n";
-  text += concat("  ", count_cloth(cloth).second,
-                 " sides keep their length; pinned: ", std::ranges::count(cloth.held, char{1}),
-                 " vertices; loaded: ", std::ranges::count(cloth.loaded, char{1}), "\n");
+  if (cloth.medial) {
+    text += concat("  ", counted(cloth.triangles.size(), "triangle"),
+                   ", by the midpoints of their sides; no springs\n");
+  } else {
+    const auto four =
+        std::ranges::count_if(distinct, [](const auto& face) { return face.corners.size() == 4; });
+    text += concat("  warp and weft: the sides of ", counted(cloth.quads.size(), "quad"),
+                   ", of which ", std::ssize(cloth.quads) - four,
+                   " are two triangles\n  springs: diagonals of quads, and sides of ",
+                   counted(cloth.triangles.size(), "triangle"), " of no quad\n");
+  }
+  if (!cloth.along_u.empty())
+    text += "  warp runs along the texture's u, and weft along its v; one limit for both\n";
+  const auto marked = [](const std::vector<char>& flags) {
+    return counted(std::ranges::count(flags, char{1}), "vertex", "vertices");
+  };
+  text +=
+      concat("  constraints: ", counted(count_cloth(cloth).second, "side"), " of fixed length\n",
+             "  pinned: ", marked(cloth.held), "; loaded: ", marked(cloth.loaded), "\n");
   text += model.remarks;
-  text += concat("  below: ", model.body.triangles.size(), " triangles of a body",
+  text += concat("  below: ", counted(model.body.triangles.size(), "triangle"), " of a body",
                  model.poses.empty() ? "" : " that moves",
                  model.floor ? concat(", a floor at ", *model.floor) : "", "\n");
-  return text;
+  return text + sketch_of(model);
 }
 
 // Several bodies are one mesh; each file of body_then has all of them, moved and turned as one.
@@ -433,6 +474,21 @@ void read_cloth(MeshModel& model, std::map<std::string, std::string>& parts, con
   model.start = in_shape_of(file, model.cloth, rest);
 }
 
+// Throws UsageError where cloth begins inside the body; else what was set up for it is kept.
+void check_outside(MeshModel& model, const std::string& path, const std::string& body) {
+  try {
+    model.checked = std::make_shared<const inextensible::TriangleCollider>(model.body, 0);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError("'" + body + "' is not a body to collide with: " + error.what());
+  }
+  const auto [deepest, inside] = depth_in(*model.checked, model.start.vertices);
+  if (inside > 0)
+    throw UsageError(concat("'", path, "': ", inside, " of ",
+                            counted(model.start.vertices.size(), "vertex", "vertices"),
+                            " begin inside the body, as deep as ", number_text(deepest, 3),
+                            " of the file's units"));
+}
+
 std::shared_ptr<const MeshModel> read_model(const std::string& name) {
   auto model = std::make_shared<MeshModel>();
   auto parts = parts_of(name);
@@ -471,25 +527,22 @@ std::shared_ptr<const MeshModel> read_model(const std::string& name) {
     throw UsageError("scene '" + name + "': no vertex is where the pins are");
   if (model->loaded && std::ranges::none_of(model->start.vertices, model->loaded))
     throw UsageError("scene '" + name + "': no vertex is where the load is");
-  if (!holds && !model->has_body())
-    throw UsageError("scene '" + name +
-                     "': nothing is pinned and nothing is below; add --pins 'y > ...', --floor "
-                     "HEIGHT or --collider FILE");
-  check_cloth(path, file, cloth, model->has_body(), welded.has_value());
-  model->remarks = remarks_of(file);
-  model->description = description_of(*model, file, cloth);
-  // What has this content has been checked before.
-  if (model->body.triangles.empty() || !expected.empty()) return model;
+  const std::vector<MeshFile::Face> distinct = distinct_faces(file);
+  model->remarks = remarks_of(file, distinct.size());
+  model->description = description_of(*model, file, cloth, distinct);
   try {
-    model->checked = std::make_shared<const inextensible::TriangleCollider>(model->body, 0);
-    const auto [deepest, inside] = depth_in(*model->checked, model->start.vertices);
-    if (inside > 0)
-      throw UsageError(concat("'", path, "': ", inside, " of ", model->start.vertices.size(),
-                              " vertices begin inside the body, as deep as ",
-                              number_text(deepest, 3), " of the file's units"));
-  } catch (const std::invalid_argument& error) {
-    throw UsageError("'" + parts["body"] + "' is not a body to collide with: " + error.what());
+    check_cloth(path, file, cloth, model->has_body() || !holds, welded.has_value());
+    // What has this content has been checked before.
+    if (!model->body.triangles.empty() && expected.empty())
+      check_outside(*model, path, parts["body"]);
+  } catch (const UsageError& error) {
+    throw UnusableMesh(error.what(), model->description);
   }
+  if (!holds && !model->has_body())
+    throw UnusableMesh("scene '" + name +
+                           "': nothing is pinned and nothing is below; add --pins 'y > ...', "
+                           "--floor HEIGHT or --collider FILE",
+                       model->description, true);
   return model;
 }
 
@@ -515,21 +568,6 @@ ClothMesh cloth_for(const MeshModel& model, const ClothMesh& start, const SceneP
   return placed(simulated(model, refined(model.cloth, whole(p)), start), p);
 }
 
-// A block whose top is the floor, far wider than the cloth.
-void add_floor(inextensible::TriangleMesh& body, double height, const Eigen::AlignedBox3d& cloth) {
-  const double reach = 20 * cloth.diagonal().norm();
-  const auto first = static_cast<int>(body.vertices.size());
-  for (int i = 0; i < 8; ++i)
-    body.vertices.push_back({cloth.center().x() + (i & 4 ? reach : -reach),
-                             height - (i & 2 ? 0 : reach),
-                             cloth.center().z() + (i & 1 ? reach : -reach)});
-  for (const auto& [a, b, c, d] : std::initializer_list<std::array<int, 4>>{
-           {0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}}) {
-    body.triangles.push_back({first + a, first + b, first + c});
-    body.triangles.push_back({first + a, first + c, first + d});
-  }
-}
-
 Scene build_mesh(const MeshModel& model, const SceneParameters& p) {
   const ClothMesh begins = refined(model.start, whole(p)), cloth = cloth_for(model, begins, p),
                   start = placed(model.midpoints ? midpoints_of(begins) : begins, p);
@@ -550,7 +588,12 @@ Scene build_mesh(const MeshModel& model, const SceneParameters& p) {
       if (box.min().y() < height - 1e-9 * box.diagonal().norm())
         throw std::invalid_argument("the cloth begins below the floor, at the height " +
                                     number_text(box.min().y()) + " m");
-      add_floor(body, height, box);
+      // A block whose top it is, far wider than the cloth.
+      const Eigen::Vector3d reach = Eigen::Vector3d::Constant(20 * box.diagonal().norm());
+      Eigen::Vector3d low = box.center() - reach, high = box.center() + reach;
+      low.y() = height - reach.y();
+      high.y() = height;
+      add_block(body, low, high);
     }
     draft.parts.collider =
         std::make_shared<const inextensible::TriangleCollider>(std::move(body), p.at("friction"));

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "harness/base/errors.h"
 #include "solvers/problem/problem.h"
 
 namespace harness {
@@ -64,9 +65,10 @@ struct SceneType {
   const char* resolution = "n";  // the parameter that a resolution sweep turns
   // A hash of the files that the scene is made of. Empty: the name says all.
   std::string identity = {};
-  std::string description = {};  // of a mesh, in lines: what was read, and what becomes of it
-  std::string remarks = {};      // those of the lines that a run says too
-  std::string reference = {};    // the .npz file of its reference; empty: it is looked for by name
+  std::string description =
+      {};                      // of a mesh, in lines: what was read and becomes of it, and a sketch
+  std::string remarks = {};    // those of the lines that a run says too
+  std::string reference = {};  // the .npz file of its reference; empty: it is looked for by name
 
   std::string kind() const { return like.empty() ? name : like; }
 };
@@ -101,6 +103,14 @@ bool names_mesh(std::string_view scene);  // "mesh:..."
 // for other parts, and for any where the scene is not a mesh.
 std::string with_mesh_parts(const std::string& scene,
                             const std::vector<std::pair<std::string, std::string>>& parts);
+
+// Thrown for a mesh that can be read, but not simulated as it is.
+struct UnusableMesh : UsageError {
+  UnusableMesh(const std::string& message, std::string what_was_read, bool only_falls = false)
+      : UsageError(message), description(std::move(what_was_read)), falls(only_falls) {}
+  std::string description;  // as SceneType's
+  bool falls;               // it is cloth, which nothing holds
+};
 
 // Reads the files. Throws UsageError, naming file and place, for what can be no cloth.
 SceneType mesh_scene(const std::string& name);

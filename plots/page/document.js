@@ -21,7 +21,11 @@ function timeText(seconds) {
 }
 const percent = (part) => part === null ? "" : `${Number((100 * part).toPrecision(3))} %`;
 const stepText = (step) => step === null ? "" : step < 0.5 ? `1/${Number((1 / step).toPrecision(4))} s` : `${step} s`;
-const words = (name) => (name.startsWith("mesh:") ? name.slice(5).split(",")[0].split("/").pop() : name.replaceAll("_", " "));
+// A mesh by its file's name and four digits of its content's hash.
+const words = (name) => {
+  const found = /^(?:mesh|folder):(?:[^,]*\/)?([^,]*)(?:.*,content=(.{4}))?/.exec(name);
+  return !found ? name.replaceAll("_", " ") : found[2] ? `${found[1]} (${found[2]})` : found[1];
+};
 
 // The command that repeats one point: that of its run, with a filter that keeps only this id.
 function commandOf(point) {

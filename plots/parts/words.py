@@ -49,8 +49,9 @@ def step_name(step: float) -> str:
 
 
 def scene_words(scene: str) -> str:
-    """As people call it: of a mesh its file's name."""
-    return clean(scene.split(":")[1].split(",")[0].rsplit("/", 1)[-1] if scene.startswith(("mesh:", "folder:")) else scene)
+    """As people call it: of a mesh its file's name, and four digits of its content's hash."""
+    found = re.match(r"(?:mesh|folder):(?:[^,]*/)?([^,]*)(?:.*,content=(.{4}))?", scene)
+    return clean(scene if not found else f"{found[1]} ({found[2]})" if found[2] else found[1])
 
 
 def subject(scene: str, vertices: int | None = None) -> str:

@@ -65,6 +65,21 @@ TriangleSides sides_of(const std::vector<std::array<int, 3>>& triangles) {
   return found;
 }
 
+std::vector<int> pieces_of(std::size_t vertices, const std::vector<std::array<int, 3>>& triangles) {
+  std::vector<int> root(vertices), number(vertices, -1), piece;
+  std::iota(root.begin(), root.end(), 0);
+  const auto root_of = [&](int v) {
+    while (root[v] != v) v = root[v] = root[root[v]];
+    return v;
+  };
+  for (const auto& [a, b, c] : triangles) root[root_of(b)] = root[root_of(c)] = root_of(a);
+  for (int v = 0, found = 0; v < static_cast<int>(vertices); ++v) {
+    int& of_root = number[root_of(v)];
+    piece.push_back(of_root < 0 ? of_root = found++ : of_root);
+  }
+  return piece;
+}
+
 ClosedSurface::ClosedSurface(TriangleMesh mesh) : mesh_(std::move(mesh)) {
   find_pseudonormals();
   check_orientation();
@@ -130,15 +145,12 @@ void ClosedSurface::check_orientation() {
 }
 
 void ClosedSurface::lay_out_grid() {
-  Vector3d high = low_ = mesh_.vertices.front();
-  for (const Vector3d& v : mesh_.vertices) {
-    low_ = low_.cwiseMin(v);
-    high = high.cwiseMax(v);
-  }
-  const Vector3d box_margin =
-      Vector3d::Constant(1e-9 * (high - low_).norm());  // no vertex on the grid's own border
-  low_ -= box_margin;
-  cell_size_ = (high + box_margin - low_) / resolution;
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& v : mesh_.vertices) box.extend(v);
+  const Vector3d margin =
+      Vector3d::Constant(1e-9 * box.sizes().norm());  // no vertex on the grid's own border
+  low_ = box.min() - margin;
+  cell_size_ = (box.max() + margin - low_) / resolution;
   inverse_cell_size_ = cell_size_.cwiseInverse();
   for (int f = 0; f < triangles(); ++f) {
     const Vector3d& normal = pseudonormal_[f][0];

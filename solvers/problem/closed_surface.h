@@ -29,6 +29,9 @@ struct TriangleSides {
 };
 TriangleSides sides_of(const std::vector<std::array<int, 3>>& triangles);
 
+// The piece that each vertex is of, from 0 on: those of a triangle are of one.
+std::vector<int> pieces_of(std::size_t vertices, const std::vector<std::array<int, 3>>& triangles);
+
 class ClosedSurface {
  public:
   using Memory = Collider::Memory;

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <numeric>
 
 namespace inextensible {
 namespace {
@@ -16,23 +15,17 @@ using Eigen::Vector3d;
 constexpr std::size_t most_pieces = 8;
 
 // The pieces of a mesh; the whole where one of them is a hollow, inside out, in another.
-std::vector<TriangleMesh> pieces_of(const TriangleMesh& mesh) {
-  std::vector<int> root(mesh.vertices.size());
-  std::iota(root.begin(), root.end(), 0);
-  const auto root_of = [&](int v) {
-    while (root[v] != v) v = root[v] = root[root[v]];
-    return v;
-  };
-  for (const auto& [a, b, c] : mesh.triangles) root[root_of(b)] = root[root_of(c)] = root_of(a);
+std::vector<TriangleMesh> surfaces_of(const TriangleMesh& mesh) {
+  const std::vector<int> piece_of = pieces_of(mesh.vertices.size(), mesh.triangles);
   struct Piece {
     Eigen::AlignedBox3d box;
     double volume = 0;  // six times
     std::size_t mesh = 0;
   };
-  std::map<int, Piece> found;  // by root
+  std::map<int, Piece> found;  // those with triangles
   const Vector3d origin = mesh.vertices.empty() ? Vector3d::Zero() : mesh.vertices[0];
   for (const auto& triangle : mesh.triangles) {
-    Piece& piece = found[root_of(triangle[0])];
+    Piece& piece = found[piece_of[triangle[0]]];
     std::array<Vector3d, 3> corner;
     for (std::size_t k = 0; k < 3; ++k) {
       piece.box.extend(mesh.vertices[triangle[k]]);
@@ -50,9 +43,9 @@ std::vector<TriangleMesh> pieces_of(const TriangleMesh& mesh) {
                            [](const Piece* piece) { return piece->box.diagonal().norm(); });
   std::vector<TriangleMesh> meshes(std::min(by_size.size(), most_pieces));
   for (std::size_t i = 0; i < by_size.size(); ++i) by_size[i]->mesh = std::min(i, most_pieces - 1);
-  std::vector<int> place(root.size(), -1);
+  std::vector<int> place(piece_of.size(), -1);
   for (auto triangle : mesh.triangles) {
-    TriangleMesh& to = meshes[found.at(root_of(triangle[0])).mesh];
+    TriangleMesh& to = meshes[found.at(piece_of[triangle[0]]).mesh];
     for (int& v : triangle) {
       if (place[v] < 0) {
         place[v] = static_cast<int>(to.vertices.size());
@@ -108,10 +101,22 @@ TriangleMesh icosphere(const Vector3d& centre, double radius, int subdivisions) 
   return mesh;
 }
 
+void add_block(TriangleMesh& mesh, const Vector3d& low, const Vector3d& high) {
+  const auto first = static_cast<int>(mesh.vertices.size());
+  for (int i = 0; i < 8; ++i)
+    mesh.vertices.emplace_back((i & 4 ? high : low).x(), (i & 2 ? high : low).y(),
+                               (i & 1 ? high : low).z());
+  for (const auto& [a, b, c, d] : std::initializer_list<std::array<int, 4>>{
+           {0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}}) {
+    mesh.triangles.push_back({first + a, first + b, first + c});
+    mesh.triangles.push_back({first + a, first + c, first + d});
+  }
+}
+
 TriangleCollider::TriangleCollider(TriangleMesh mesh, double friction)
     : mesh_(std::move(mesh)), friction_(friction) {
   std::vector<ClosedSurface> pieces;
-  for (TriangleMesh& piece : pieces_of(mesh_)) pieces.emplace_back(std::move(piece));
+  for (TriangleMesh& piece : surfaces_of(mesh_)) pieces.emplace_back(std::move(piece));
   pieces_ = std::make_shared<const std::vector<ClosedSurface>>(std::move(pieces));
 }
 

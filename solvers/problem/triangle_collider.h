@@ -13,6 +13,9 @@ namespace inextensible {
 // 4^subdivisions faces. Mirror symmetric in all three coordinate planes through its centre.
 TriangleMesh icosphere(const Eigen::Vector3d& centre, double radius, int subdivisions);
 
+// Adds the block between two opposite corners.
+void add_block(TriangleMesh& mesh, const Eigen::Vector3d& low, const Eigen::Vector3d& high);
+
 class TriangleCollider final : public Collider {
  public:
   // friction: Coulomb coefficient. Throws std::invalid_argument for a mesh that is not closed.

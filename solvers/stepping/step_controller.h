@@ -26,7 +26,8 @@ class StepController {
     int most_halvings = 14;     // below largest / 2^14 it gives up; 0 to 30
     int patience = 4;           // accepted steps of one size before the next larger one is tried
     // Energy that steps may add, over weight times size and the kinetic energy at first; infinite:
-    // any.
+    // any. Long steps of a method that works add up to half as much for a while, where a heavy end
+    // is caught in its swing, and lose it again; what blows up soon passes any bound.
     double energy_bound = 0.5;
   };
   // The stepper must outlive the controller and take no other steps meanwhile.

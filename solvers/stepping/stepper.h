@@ -40,7 +40,8 @@ class Stepper {
   Stepper& operator=(const Stepper&) = delete;
 
   // Advances `state` (shapes as the problem's, finite) by h > 0 seconds. On refusal the state is
-  // untouched. After the first call only library factorizations allocate.
+  // untouched. After the first call only library factorizations allocate. Energy is not looked at:
+  // a step that meets every limit may add some, which StepController bounds.
   StepResult advance(State& state, double h);
 
   // Positions of the last accepted step after the inextensibility filter and before the collision

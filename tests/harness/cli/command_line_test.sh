@@ -110,6 +110,8 @@ cmp -s old.json kept.json && fail "--force did not replace it"
 # ---- Standard streams that are closed or full ----
 bench "${tiny[@]}" --out closed.json >/dev/null 2>&- || fail "stderr closed: exit $?"
 holds 'assert read("closed.json")["complete"]'
+(ulimit -f 1 && exec "$BENCH_BINARY" "${tiny[@]}" --out large.json) >/dev/null 2>err.txt
+[[ $? == 2 ]] && grep -q "cannot write 'large.json" err.txt || fail "a file beyond ulimit -f: $(cat err.txt)"
 bench list >/dev/full 2>err.txt
 [[ $? == 1 ]] && grep -q "cannot write to 'standard output'" err.txt || fail "a full standard output: $(cat err.txt)"
 bench list >&- 2>err.txt
@@ -133,14 +135,33 @@ import re
 text = open("chosen.txt").read()
 take = re.search(r"^take  (yarn|fast)_projection at 1/(\S+) s .*: (\S+) ms a frame, 99 % below (\S+), worst (\S+); strain (\S+) %, error (\S+) %", text, re.M)
 rate, median, p99, worst, strain, error = (float(number) for number in take.groups()[1:])
-assert strain <= 1 and error <= 5 and rate >= 60 and 0 < median <= p99 <= worst and text.startswith("curtain.obj, 49 vertices"), text'
+assert strain <= 1 and error <= 5 and rate >= 60 and 0 < median <= p99 <= worst and re.match(r"curtain.obj \([0-9a-f]{4}\), 49 vertices", text), text'
 # Its reference is named after the file's content, not its path, and is stored with the user's results.
 place=$(bench reference --scene mesh:curtain.obj --pins 'y > 0.99 and x < 0.02' --set duration=0.08 --finest 0.0005 2>err.txt | tail -1)
 [[ $place == */references/mesh-* && -s $place ]] || fail "the reference of a mesh: '$place', $(tail -1 err.txt)"
 mkdir elsewhere && cp curtain.obj elsewhere/other.obj
 bench reference --scene mesh:elsewhere/other.obj --n 1 --pins 'y > 0.99 and x < 0.02' --set duration=0.08 | grep -q 'nothing is missing' ||
   fail "the same file under another name"
+# With other content the same name is another scene, whose error is unknown.
+for faces in 36 35; do
+  head -n $((49 + faces)) curtain.obj >elsewhere/curtain.obj
+  makes "faces$faces.json" --sweep strain --profile pairs --scene mesh:elsewhere/curtain.obj --pins 'y > 0.99 and x < 0.02' \
+    --set duration=0.08 --limit 0.01 --solver '^icd$' --untimed --no-plots
+done
+grep -q 'no reference, so no trajectory error' faces35.json.err || fail "a reference of other content: $(cat faces35.json.err)"
+holds '
+known, other = (read(f"faces{faces}.json")["points"] for faces in (36, 35))
+assert known[0]["error"]["trajectory"] > 0 and not any(p["error"] and p["error"]["trajectory"] for p in other), (known, other)
+assert not {p["id"] for p in known} & {p["id"] for p in other}
+assert all(p["id"].startswith("mesh:curtain.obj,pins=") for p in known), known'
+exits 5 'have no point in common' compare faces36.json faces35.json
 rm -f "$place"
+# A mesh is described and drawn, also before anything holds it.
+exits 0 'a scene once it is held' mesh curtain.obj
+(($(grep -c . stdout.txt) > 9)) && grep -q '36 quads' stdout.txt || fail "a mesh's description: $(cat stdout.txt)"
+exits 2 'all vertices are pinned' mesh curtain.obj --pins 'y < 9'
+grep -q '36 quads' stdout.txt || fail "a description of what is no scene: $(cat stdout.txt)"
+refused 'cannot read the mesh' mesh nowhere.obj
 # Without time for a run, or with an impossible budget, nothing is recommended; a solver named in full is tried.
 exits 6 'no run ended within its strain limit in this time' choose --no-wait --scene drape --n 71 --seconds 0.5
 exits 6 'no solver that was tried keeps the budget' choose --no-wait --scene chain --n 10 --error 0.5 --seconds 10 \

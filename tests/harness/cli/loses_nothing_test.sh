@@ -117,6 +117,23 @@ kill -INT "$!" && wait "$!"
 bench repeat again.json --no-wait >/dev/null 2>&1 || fail "repetition that goes on: exit $?"
 holds 'assert len(read("again.json")["context"]["occasions"]) == 2'
 
+# ---- The mesh changes its content ----
+grid() {  # a square of 6 x 6 vertices, the lower half pulled down by so much
+  for i in {0..5}; do for j in {0..5}; do echo "v $j -$i$([[ $i -gt 2 ]] && echo "$1") 0"; done; done
+  for i in {0..4}; do for j in {1..5}; do echo "f $((6*i+j)) $((6*i+j+1)) $((6*i+j+7)) $((6*i+j+6))"; done; done
+}
+sweep+=(--scene mesh:m.obj --pins 'y >= 0' --set duration=0.3 --steps all)
+whole=1000
+grid .0 >m.obj
+hold mesh.json 5
+let_go INT
+grid .5 >m.obj
+refused "content=" "${sweep[@]}" --resume --out mesh.json
+bench "${sweep[@]}" --resume --force --out mesh.json >/dev/null 2>&1 || fail "resumed with another mesh: exit $?"
+bench "${sweep[@]}" --out fresh.json >/dev/null 2>&1 || fail "a sweep of a mesh: exit $?"
+same fresh.json mesh.json || fail "points of another mesh were kept"
+sweep=("${sweep[@]:0:5}")
+
 # ---- The folder goes ----
 mkdir gone
 hold gone/result.json 5

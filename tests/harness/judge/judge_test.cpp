@@ -235,14 +235,7 @@ TEST(EnergyRecord, InterpolatesBetweenUnequalSteps) {
 
 TriangleMesh box(const Vector3d& half) {
   TriangleMesh mesh;
-  for (int i = 0; i < 8; ++i)
-    mesh.vertices.emplace_back(i & 4 ? half.x() : -half.x(), i & 2 ? half.y() : -half.y(),
-                               i & 1 ? half.z() : -half.z());
-  for (const auto& [a, b, c, d] : std::vector<std::array<int, 4>>{
-           {0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}}) {
-    mesh.triangles.push_back({a, b, c});
-    mesh.triangles.push_back({a, c, d});
-  }
+  add_block(mesh, -half, half);
   return mesh;
 }
 

@@ -11,6 +11,7 @@
 
 #include "harness/base/text.h"
 #include "harness/judge/mechanics.h"
+#include "harness/scenes/mesh_file.h"
 #include "solvers/problem/triangle_collider.h"
 #include "solvers/registry.h"
 #include "support/refusal.h"
@@ -28,6 +29,17 @@ std::string file_with(const std::string& name, const std::string& text) {
 // The name of a scene of such a file, by default pinned along its highest row.
 std::string mesh(const std::string& text, const std::string& parts = ",pins=y>-0.01") {
   return "mesh:" + file_with("cloth.obj", text) + parts;
+}
+
+// A block, turned about the vertical.
+std::string block_file(const std::string& name, const Eigen::Vector3d& low,
+                       const Eigen::Vector3d& high, double turn = 0) {
+  inextensible::TriangleMesh block;
+  add_block(block, low, high);
+  Positions x(3, 8);
+  for (int v = 0; v < 8; ++v)
+    x.col(v) = Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitY()) * block.vertices[v];
+  return file_with(name, obj_text(x, block.triangles, {}));
 }
 
 // The quad in two, by the diagonal from a or from b.
@@ -127,10 +139,7 @@ TEST(MeshScene, TrianglesThatMakeNoQuadsHoldWithSprings) {
 }
 
 TEST(MeshScene, FallsOntoItsBodyAndKeepsItsLimit) {
-  const std::string body = file_with(
-      "box.obj",
-      "v -1 -1 -1\nv 2 -1 -1\nv 2 -1 1\nv -1 -1 1\nv -1 -1.5 -1\nv 2 -1.5 -1\nv 2 -1.5 1\nv -1 "
-      "-1.5 1\nf 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+  const std::string body = block_file("box.obj", {-1, -1.5, -1}, {2, -1, 1});
   // It hangs above, its lowest row on the box, and folds.
   const Scene scene = built_scene(mesh(square(8), ",body=" + body));
   const auto stepper = inextensible::make_stepper("fast_projection", scene.problem, {0.01});
@@ -143,14 +152,13 @@ TEST(MeshScene, FallsOntoItsBodyAndKeepsItsLimit) {
 
 TEST(MeshScene, IsWhatItsExporterMeans) {
   const std::string plain = square(3);
-  std::string double_sided = plain, continued = plain;
-  double_sided += "f 5 4 1 2\n";  // the first face from behind
+  std::string double_sided = plain, continued = plain, spare = plain;
+  spare.insert(spare.find("f "), "v 9 9 9\n");  // so that no corner would be missing
+  double_sided += "f 5 4 1 2\n";                // the first face from behind
   continued.insert(continued.find(" 2//1"), " \\\r\n");
   const Scene expected = built_scene(mesh(plain));
   for (const std::string& text :
-       {"\xEF\xBB\xBF" + plain,
-        "\xEF\xBB\xBFv 9 9 9\n" + std::regex_replace(plain, std::regex("(\\d+)//1"), "-$1"),
-        plain + "vt 0 1\nusemtl cotton # blue\n",
+       {"\xEF\xBB\xBF" + plain, "\xEF\xBB\xBF" + spare, plain + "vt 0 1\nusemtl cotton # blue\n",
         plain.substr(0, plain.size() - 1) + " # the last face\n", double_sided, continued,
         "v 9 9 9\n" + std::regex_replace(plain, std::regex("(\\d+)//1"), "-$1"),
         std::regex_replace(plain, std::regex("f 1//1 2//1 5//1 4//1"), "f 1 2 5\nf 1 5 4")})
@@ -182,8 +190,12 @@ TEST(MeshScene, InPiecesIsRefusedUntilItIsWelded) {
       "v 0 0 0\nv .5 0 0\nv .5 -.5 0\nv 0 -.5 0\nv .5 0 0\nv 1 0 0\nv 1 -.5 0\nv .5 -.5 1e-9\n"
       "v 0 -.5 0\nv .5 -.5 0\nv .5 -1 0\nv 0 -1 0\nv .5 -.5 0\nv 1 -.5 0\nv 1 -1 0\nv .5 -1 0\n"
       "f 1 2 3 4\nf 5 6 7 8\nf 9 10 11 12\nf 13 14 15 16\n";
-  for (const char* part : {"in 4 pieces, 2 of them pinned nowhere", "--weld 1e-6"})
-    EXPECT_TRUE(refuses([&] { find_scene(mesh(soup, ",pins=y>=0")); }, part));
+  const std::string triangles =
+      std::regex_replace(soup, std::regex("f (\\d+) (\\d+) (\\d+) (\\d+)"), "f $1 $2 $3");
+  for (const std::string& text : {soup, triangles})
+    for (const char* part :
+         {"in 4 pieces, 2 of them pinned nowhere, as that of vertex 9", "--weld 1e-6"})
+      EXPECT_TRUE(refuses([&] { find_scene(mesh(text, ",pins=y>=0")); }, part));
   EXPECT_EQ(joined_places(built_scene(mesh(square(3)))),
             joined_places(built_scene(mesh(soup, ",pins=y>=0,weld=1e-6"))));
 }
@@ -192,23 +204,48 @@ TEST(MeshScene, BodiesAreTurnedWeldedAndOutsideTheCloth) {
   const std::string corners =
       "v -1 -3 -1\nv 2 -3 -1\nv 2 -3 1\nv -1 -3 1\nv -1 -2 -1\nv 2 -2 -1\nv 2 -2 1\nv -1 -2 1\n";
   const std::string sheet = mesh(square(4), ",body=");
-  const auto top = [&](const std::string& faces) {
-    const Scene scene = built_scene(sheet + file_with("body.obj", corners + faces));
+  const auto top = [&](const std::string& text, const char* parts = "") {
+    const Scene scene = built_scene(sheet + file_with("body.obj", text) + parts);
     inextensible::ContactPlane plane{};
     inextensible::WorkCounters work;
-    EXPECT_TRUE(scene.problem->collider()->plane_at({0.3, -2.01, 0.1}, plane, work)) << faces;
+    EXPECT_TRUE(scene.problem->collider()->plane_at({0.3, -2.01, 0.1}, plane, work)) << text;
     return plane.normal;
   };
   const std::string sides = "f 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n";
   for (const char* ends :
        {"f 1 2 3 4\nf 8 7 6 5\n", "f 4 3 2 1\nf 8 7 6 5\n", "f 1 2 3 4\nf 5 6 7 8\n"})
-    EXPECT_LT((top(sides + ends) - Eigen::Vector3d(0, 1, 0)).norm(), 1e-12) << ends;
+    EXPECT_LT((top(corners + sides + ends) - Eigen::Vector3d(0, 1, 0)).norm(), 1e-12) << ends;
+  // Each face with corners of its own.
+  const MeshFile box =
+      read_mesh_file(file_with("box.obj", corners + sides + "f 1 2 3 4\nf 8 7 6 5\n"));
+  std::ostringstream split;
+  for (const auto& face : box.faces) {
+    for (const int v : face.corners) split << "v " << box.vertices[v].transpose() << '\n';
+    split << "f -4 -3 -2 -1\n";
+  }
+  EXPECT_LT((top(split.str(), ",weld=1e-6") - Eigen::Vector3d(0, 1, 0)).norm(), 1e-12);
   const auto refused = [&](const std::string& text, const char* part) {
     EXPECT_TRUE(refuses([&] { find_scene(sheet + file_with("body.obj", text)); }, part));
   };
+  refused(split.str(), "has 1 face, a closed surface has 2; --weld 1e-6 joins doubled corners");
   refused(corners + sides, "vertices 1 and 2 has 1 face");
   refused(std::regex_replace(corners, std::regex("-2"), "-.4") + sides + "f 1 2 3 4\nf 8 7 6 5\n",
           "8 of 16 vertices begin inside the body, as deep as 0.6");
+}
+
+// Seen along z, with the pins in the highest row; also where nothing holds it yet, or it cannot
+// move.
+TEST(MeshScene, IsDescribedAndDrawn) {
+  const std::string twice = square(5) + "f 6 7 2 1\n";  // its first face from behind
+  const std::string text = find_scene(mesh(twice))->description;
+  for (const char* part : {"25 vertices, 17 faces", "1 piece\n", "unit: 1 x 1 x 0 m", "twice: 1",
+                           "16 quads, of which 0 are two triangles", "constraints: 36 sides",
+                           "pinned: 5 vertices; loaded: 0 vertices", "along z"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << '\n' << text;
+  const std::string drawn = text.substr(text.find('\n', text.find("along z")) + 1);
+  EXPECT_EQ(std::ranges::count(drawn, 'o'), 5);
+  EXPECT_EQ(std::ranges::count(drawn.substr(0, drawn.find('\n')), 'o'), 5) << text;
+  EXPECT_EQ(drawn.find_first_not_of(" .o\n"), std::string::npos) << text;
 }
 
 TEST(MeshScene, WhatCanBeNoClothIsRefusedInALine) {
@@ -240,7 +277,7 @@ TEST(MeshScene, WhatCanBeNoClothIsRefusedInALine) {
       {scene_of("bowtie", two + "f 1 2 4 3\n"), "it crosses itself"},
       {scene_of("one", two + "f 1 2 3\n"), "is constrained"},
       {scene_of("seam", two + "v 0 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nf 1 2 3 4\nf 5 6 7 8\n"),
-       "in 2 pieces, 1 of them pinned nowhere; corners lie on each other: --weld"},
+       "in 2 pieces, 1 of them pinned nowhere, as that of vertex 5; corners"},
       {scene_of("fan", two + "v 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 2 5\n"),
        "between vertices 1 and 2 belongs to more than two faces"},
   };
@@ -413,15 +450,7 @@ TEST(MeshScene, TrianglesByMidpointsDoNotLock) {
 
 TEST(MeshScene, BodiesMayBeSeveralOpenAndMoving) {
   const auto box = [](const char* name, double x, double turn) {
-    std::ostringstream text;
-    text.precision(17);
-    for (int i = 0; i < 8; ++i) {
-      const double px = x + (i & 1 ? 0.2 : -0.2), pz = i & 4 ? 0.2 : -0.2;
-      text << "v " << std::cos(turn) * px + std::sin(turn) * pz << ' ' << (i & 2 ? -1.1 : -1.4)
-           << ' ' << std::cos(turn) * pz - std::sin(turn) * px << '\n';
-    }
-    text << "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
-    return file_with(name, text.str());
+    return block_file(name, {x - 0.2, -1.4, -0.2}, {x + 0.2, -1.1, 0.2}, turn);
   };
   const std::string cloth = mesh(square(5));
   const std::string one = box("one.obj", 0, 0), two = box("two.obj", 1, 0),

@@ -85,6 +85,7 @@ use() {
     baseline) words=(small.json --out baseline.json) ;;
     ab) words=("$bench" "$bench" --scene chain --solver fast_projection --filter 'strain:0.01/' --pairs 4 --sample-seconds 0.001) ;;
     export) words=(--scene chain --out exported) ;;
+    mesh) words=(exported/cloth.obj) ;;
     judge) words=(exported exported/reference.npz) ;;
     tune) words=(--scene chain --solver icd --out tuned.json) ;;  # there already
     reference) words=(--profile pairs --scene chain) ;;           # there already
@@ -119,6 +120,7 @@ sed 's/fast_projection/misfit/g' point.txt >thrown.txt
 sound() { printf '%s' "$kinds/libplugin_$1.so"; }
 "$bench" --plugin "$(sound bare)" --sweep strain --profile pairs --reps 1 --filter 'strain:0.0*1/' --solver sound \
   --no-plots --out bare.json >sweep.txt 2>&1 || fail "a solver without collider: $(cat sweep.txt)"
+grep -q 'left out .*drape by sound (' sweep.txt || fail "a scene left out in silence: $(cat sweep.txt)"
 /usr/bin/python3 - <<'PYTHON' || fail "a row that lacks a part"
 import json
 points = [p for p in json.load(open("bare.json"))["points"] if p["solver"] == "sound"]
