@@ -7,7 +7,6 @@
 #include <numeric>
 #include <set>
 
-#include "harness/base/errors.h"
 #include "harness/base/text.h"
 
 namespace harness {
