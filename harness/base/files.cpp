@@ -14,7 +14,7 @@
 #include <sstream>
 
 #include "build_info.h"  // made by CMake
-#include "harness/base/errors.h"
+#include "harness/base/text.h"
 
 namespace harness {
 namespace {

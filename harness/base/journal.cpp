@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 
-#include "harness/base/errors.h"
 #include "harness/base/json.h"
 #include "harness/base/text.h"
 

@@ -10,7 +10,6 @@
 #include <valijson/validation_results.hpp>
 #include <valijson/validator.hpp>
 
-#include "harness/base/errors.h"
 #include "harness/base/text.h"
 
 namespace harness {

@@ -13,7 +13,6 @@
 #include <numeric>
 #include <optional>
 
-#include "harness/base/errors.h"
 #include "harness/base/text.h"
 
 namespace harness {

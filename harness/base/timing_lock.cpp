@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "harness/base/clock.h"
-#include "harness/base/errors.h"
+#include "harness/base/text.h"
 
 namespace harness {
 namespace {

@@ -1,6 +1,5 @@
 // C4, C7 to C10, C12 to C14 and C16: what works at all, residuals, shapes and strains.
 
-#include "harness/base/errors.h"
 #include "harness/base/text.h"
 #include "harness/claims/claims.h"
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/text.h"
 

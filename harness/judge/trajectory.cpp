@@ -1,6 +1,5 @@
 #include "harness/judge/trajectory.h"
 
-#include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/text.h"
 #include "harness/judge/mechanics.h"

@@ -24,7 +24,7 @@
 #include <vector>
 
 #include "harness/base/clock.h"
-#include "harness/base/errors.h"
+#include "harness/base/text.h"
 #include "harness/base/timing_lock.h"
 #include "harness/points/context.h"
 #include "harness/scenes/scene.h"

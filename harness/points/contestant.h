@@ -2,7 +2,6 @@
 // part several times.
 #pragma once
 
-#include "harness/base/errors.h"
 #include "harness/base/text.h"
 #include "harness/points/point_json.h"
 

@@ -7,7 +7,6 @@
 #include <deque>
 
 #include "harness/base/child_process.h"
-#include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/text.h"
 #include "harness/points/processes.h"

@@ -1,7 +1,6 @@
 // The Python module `inextensible`: bench's scenes, solvers and judge on numpy arrays.
 #include <pybind11/stl.h>
 
-#include "harness/base/errors.h"
 #include "harness/base/text.h"
 #include "harness/judge/drive.h"
 #include "harness/judge/mechanics.h"

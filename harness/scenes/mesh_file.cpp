@@ -9,7 +9,6 @@
 #include <numeric>
 #include <set>
 
-#include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/text.h"
 

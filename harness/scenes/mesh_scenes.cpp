@@ -11,7 +11,6 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/text.h"
 #include "harness/scenes/cloth_mesh.h"

@@ -6,7 +6,6 @@
 #include <memory>
 #include <random>
 
-#include "harness/base/errors.h"
 #include "harness/base/text.h"
 #include "harness/stability/cases.h"
 #include "harness/stability/hard_case.h"

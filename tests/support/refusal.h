@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/base/errors.h"
+#include "harness/base/text.h"
 
 namespace harness {
 

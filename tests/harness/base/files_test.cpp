@@ -8,7 +8,6 @@
 #include <fstream>
 #include <thread>
 
-#include "harness/base/errors.h"
 #include "harness/base/json.h"
 #include "harness/base/text.h"
 #include "support/refusal.h"

@@ -8,8 +8,8 @@
 #include <random>
 
 #include "harness/base/clock.h"
-#include "harness/base/errors.h"
 #include "harness/base/files.h"
+#include "harness/base/text.h"
 #include "harness/judge/drive.h"
 #include "harness/judge/judge.h"
 #include "harness/judge/reference_routes.h"
