@@ -98,14 +98,14 @@ struct SweepCommand : SweepOptions, OutputOptions {
     for (const Plugin& plugin : loaded_plugins())
       wanted.insert(plugin.solvers.begin(), plugin.solvers.end());
     std::string all;
-    for (const SweepSpec& sweep : suite.sweeps)
+    for (const SweepSpec& spec : suite.sweeps)
       for (const auto& backend : backends()) {
         const auto asked = filters_of(*this).solver;
         if (asked ? !matches(*asked, backend.name) : !wanted.contains(backend.name)) continue;
-        if (std::ranges::count(sweep.contestants, backend.name, &Contestant::solver) > 0) continue;
-        const auto type = find_scene(sweep.scene);
-        const std::string part = not_taken(backend, *type, sweep.scene_parameters);
-        const std::string one = concat(sweep.scene, " by ", backend.name, " (", part, ")");
+        if (std::ranges::count(spec.contestants, backend.name, &Contestant::solver) > 0) continue;
+        const auto type = find_scene(spec.scene);
+        const std::string part = not_taken(backend, *type, spec.scene_parameters);
+        const std::string one = concat(spec.scene, " by ", backend.name, " (", part, ")");
         if (!part.empty() && all.find(one) == std::string::npos) append(all, one);
       }
     if (!all.empty())

@@ -184,10 +184,10 @@ MeshFile thickened(MeshFile file, double thickness) {
 inextensible::Pose pose_between(const MeshFile& body, const MeshFile& there) {
   if (body.vertices.size() != there.vertices.size())
     throw UsageError("'" + there.path + "' has other vertices than '" + body.path + "'");
-  const auto points = [n = std::ssize(body.vertices)](const MeshFile& file) {
+  const auto points = [n = std::ssize(body.vertices)](const MeshFile& file) -> Eigen::MatrixXd {
     return Eigen::Map<const Positions>(file.vertices.data()->data(), 3, n);
   };
-  const Eigen::Matrix4d motion = Eigen::umeyama(points(body), points(there), false);
+  const Eigen::MatrixXd motion = Eigen::umeyama(points(body), points(there), false);
   const inextensible::Pose pose{motion.topLeftCorner<3, 3>(), motion.topRightCorner<3, 1>()};
   for (std::size_t v = 0; v < body.vertices.size(); ++v)
     if ((pose(body.vertices[v]) - there.vertices[v]).norm() >

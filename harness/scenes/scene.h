@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "harness/base/errors.h"
+#include "harness/base/text.h"
 #include "solvers/problem/problem.h"
 
 namespace harness {
