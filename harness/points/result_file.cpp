@@ -228,22 +228,30 @@ json read_result(const std::string& path, ResultKinds kinds) {
 std::optional<PairNoise> pair_noise(const std::vector<PointResult>& points,
                                     const std::string& one) {
   PairNoise noise{{one, double_of(one)}};
-  const auto place_of = [](PointSpec spec) {  // everything but the contestant
-    spec.contestant = spec.solver = "";
-    spec.settings.clear();
-    return key_of(spec);
+  // Best points, by what they are best at; in a step sweep every point.
+  const auto by_place = [&](const std::string& contestant) {
+    std::map<std::string, const PointResult*> places;
+    for (const PointResult& point : points) {
+      if (!point.ok() || point.samples.empty() || point.spec.contestant != contestant) continue;
+      PointSpec place = point.spec;
+      place.contestant = place.solver = "";
+      place.settings.clear();
+      if (place.sweep != "step") place.step = 0;
+      const std::string key = key_of(place);
+      if (point.best || place.sweep == "step") places[key] = &point;
+      for (const double level : point.best_at_errors)
+        if (place.sweep != "step") places[key + number_text(level)] = &point;
+    }
+    return places;
   };
-  std::map<std::string, const PointResult*> first;
-  for (const PointResult& point : points)
-    if (point.ok() && !point.samples.empty() && point.spec.contestant == one)
-      first[place_of(point.spec)] = &point;
+  const auto first = by_place(noise.pair[0]);
+  std::set<std::pair<const PointResult*, const PointResult*>> pairs;
+  for (const auto& [place, point] : by_place(noise.pair[1]))
+    if (const auto twin = first.find(place); twin != first.end())
+      pairs.emplace(twin->second, point);
   std::vector<double> distances;
-  for (const PointResult& point : points) {
-    if (!point.ok() || point.samples.empty() || point.spec.contestant != noise.pair[1]) continue;
-    const auto twin = first.find(place_of(point.spec));
-    if (twin != first.end() && (counts(point) || counts(*twin->second)))
-      distances.push_back(std::abs(std::log(point.seconds() / twin->second->seconds())));
-  }
+  for (const auto& [twin, point] : pairs)
+    distances.push_back(std::abs(std::log(point->seconds() / twin->seconds())));
   if (distances.empty()) return {};
   noise.places = static_cast<int>(distances.size());
   noise.median = quantile(distances, 0.5);

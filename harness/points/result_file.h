@@ -46,8 +46,9 @@ struct NamedResult {
   json document;
 };
 
-// Over all places, steps included, where both ran to the end and one has a best point (in a step
-// sweep any): |log(time of one / time of the other)|. A difference below q95 is none.
+// Over all limits, sizes and levels of error at which both have a best point, in a step sweep over
+// all steps at which both ran to the end: |log(time of one / time of the other)|. A difference
+// below q95 is none.
 struct PairNoise {
   std::array<std::string, 2> pair;  // contestants
   int places = 0;
