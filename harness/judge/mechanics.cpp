@@ -17,11 +17,13 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 StrainRange strain_range(const Problem& problem, const Positions& x) {
   double low = 1, high = 1;  // |d|^2 / l^2: one root for all edges instead of one each
   std::size_t shortest = 0, longest = 0;
+  const std::vector<double>& scale = problem.limit_scale();
   for (std::size_t k = 0; k < problem.edges().size(); ++k) {
     const auto [a, b] = problem.edges()[k];
     const double l = problem.rest_length()[k];
-    const double q = (x.col(b) - x.col(a)).squaredNorm() / (l * l);
+    double q = (x.col(b) - x.col(a)).squaredNorm() / (l * l);
     if (!std::isfinite(q)) return {infinity, infinity, k};
+    if (!scale.empty()) q = std::pow(1 + (std::sqrt(q) - 1) / scale[k], 2);
     if (q < low) {
       low = q;
       shortest = k;
@@ -39,6 +41,7 @@ void append_strains(const Problem& problem, const Positions& x, std::vector<doub
   for (std::size_t k = 0; k < problem.edges().size(); ++k) {
     const auto [a, b] = problem.edges()[k];
     strains.push_back(std::abs((x.col(b) - x.col(a)).norm() / problem.rest_length()[k] - 1));
+    if (!problem.limit_scale().empty()) strains.back() /= problem.limit_scale()[k];
   }
 }
 

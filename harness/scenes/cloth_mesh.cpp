@@ -413,9 +413,19 @@ Draft cloth_draft(const ClothMesh& mesh, const SceneParameters& p) {
     parts.mass.push_back(p.at("density") * area[v] + value_or_zero(p, "line_density") * rope[v]);
     if (p.at("drag") > 0) parts.drag.push_back(p.at("drag") * area[v]);
   }
+  std::set<Side> weft;
+  for (std::size_t q = 0; q < mesh.along_u.size(); ++q)
+    for (const std::size_t k : {0, 2})
+      weft.insert(side_of(mesh.quads[q], mesh.along_u[q] ? k + 1 : k));
+  const double weft_limit = p.contains("weft_limit") ? p.at("weft_limit") : 1;
   const std::set<Side> yarn_sides = constrained_sides(mesh);
-  for (const auto& [a, b] : yarn_sides)
-    if (!held(a, b)) draft.constrain(a, b, length(a, b));
+  for (const auto& [a, b] : yarn_sides) {
+    if (held(a, b)) continue;
+    draft.constrain(a, b, length(a, b));
+    if (weft_limit != 1)
+      parts.limit_scale.push_back((weft.contains({a, b}) ? weft_limit : 1) /
+                                  std::min(weft_limit, 1.0));
+  }
   if (p.at("shear") > 0) {
     inextensible::Springs springs;
     const auto join = [&](int a, int b) {
@@ -434,10 +444,6 @@ Draft cloth_draft(const ClothMesh& mesh, const SceneParameters& p) {
   }
   if (p.at("bending") > 0) {
     if (mesh.medial) parts.bending = hinges_of(mesh, p.at("bending"));
-    std::set<Side> weft;
-    for (std::size_t q = 0; q < mesh.along_u.size(); ++q)
-      for (const std::size_t k : {0, 2})
-        weft.insert(side_of(mesh.quads[q], mesh.along_u[q] ? k + 1 : k));
     for (const auto& [a, b, c] : yarns_of(mesh)) {
       const double rigidity =
           p.at("bending") * (weft.contains(side(a, b)) ? p.at("weft_bending") : 1);

@@ -55,7 +55,7 @@ ParameterInfos with_cloth_parameters(const ParameterInfos& own, const ClothDefau
 // triangles of midpoints against each other, flat at rest;
 // all forces act as they are at the end of a step. Parameters: density (kg/m^2), gravity, shear
 // (N/m), bending (N m), drag (N s/m^3), duration, line_density (kg/m) if there are ropes, and
-// weft_bending (of weft over that of warp) if the texture tells them apart. Left to the caller: the
+// weft_bending and weft_limit (of weft over that of warp) if the texture tells them apart. Left to the caller: the
 // scene's size, and what is not at rest there.
 Draft cloth_draft(const ClothMesh& mesh, const SceneParameters& p);
 

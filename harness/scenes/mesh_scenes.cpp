@@ -638,7 +638,10 @@ SceneType mesh_scene(const std::string& name) {
     own.push_back({"friction", 0.3, "Coulomb coefficient of body and floor", zero_too, 1e3});
   if (!model->cloth.ropes.empty()) own.push_back({"line_density", 0.05, "of lines, kg/m", 0, 1e4});
   if (!model->cloth.along_u.empty())
-    own.push_back({"weft_bending", 1, "bending rigidity of weft over that of warp", zero_too, 1e6});
+    own.insert(own.end(),
+               {{"weft_bending", 1, "bending rigidity of weft over that of warp", zero_too, 1e6},
+                {"weft_limit", 1,
+                 "strain limit of weft over that of warp; the tighter is the run's", 0.001, 1e3}});
   if (model->loaded) own.push_back({"load", 1, "on the vertices of --load together, kg", 0, 1e6});
   return {.name = model->name,
           .summary = "cloth of your own",

@@ -72,6 +72,7 @@ json document_of(const Scene& scene) {
                 {"staggered", scene.staggered}};
   if (std::isfinite(scene.energy_bound)) document["energy_bound"] = scene.energy_bound;
   if (!scene.start.v.isZero(0)) document["v"] = numbers_of(scene.start.v);
+  if (!problem.limit_scale().empty()) document["limit_scale"] = problem.limit_scale();
   if (const inextensible::Springs* shear = problem.shear()) {
     document["spring"] = pairs_of(shear->edges);
     document["spring_length"] = shear->rest_length;
@@ -135,6 +136,7 @@ Scene scene_of(const json& document, const std::string& folder) {
   document.at("pinned").get_to(parts.pinned);
   parts.edges = edges_of(document.at("edge"));
   document.at("rest_length").get_to(parts.rest_length);
+  parts.limit_scale = document.value("limit_scale", none).get<std::vector<double>>();
   if (document.contains("spring"))
     parts.shear = {edges_of(document.at("spring")), document.at("spring_length"),
                    document.at("spring_stiffness")};

@@ -29,6 +29,7 @@ class GaussSeidel final : public VelocityFilter {
         max_iterations_(options.count("max_iterations")),
         relaxation_(options.number("relaxation")),
         band_(options.strain_limit, options.number("target")),
+        own_bands_(bands_of(problem, options)),
         permutation_(problem.constraints()),
         random_(options.seed) {
     std::iota(permutation_.begin(), permutation_.end(), 0);
@@ -46,7 +47,10 @@ class GaussSeidel final : public VelocityFilter {
       }
       shuffle();
       const std::int64_t projections =
-          along_ == Along::middle ? pass<true>(x_start, x) : pass<false>(x_start, x);
+          along_ == Along::middle
+              ? own_bands_.empty() ? pass<true, false>(x_start, x) : pass<true, true>(x_start, x)
+          : own_bands_.empty() ? pass<false, false>(x_start, x)
+                               : pass<false, true>(x_start, x);
       work.edge_projections += projections;
       x.settle();
       if (passes % 1024 == 1023) x.renew_planes(work);
@@ -75,11 +79,20 @@ class GaussSeidel final : public VelocityFilter {
     }
   }
 
-  template <bool middle>
+  // One an edge where limits differ, else none.
+  static std::vector<StrainBand> bands_of(const Problem& problem, const BackendOptions& options) {
+    std::vector<StrainBand> bands;
+    for (const double scale : problem.limit_scale())
+      bands.emplace_back(scale * options.strain_limit, options.number("target"));
+    return bands;
+  }
+
+  // own: limits differ.
+  template <bool middle, bool own>
   std::int64_t pass(const Positions& x_start, Positions& x) const {
     double* p = x.data();
     const double* start = x_start.data();
-    const StrainBand band = band_;  // in registers
+    const StrainBand common = band_;  // in registers
     const double relaxation = relaxation_;
     std::int64_t projections = 0;
     for (const int k : permutation_) {
@@ -88,6 +101,7 @@ class GaussSeidel final : public VelocityFilter {
       double* pb = p + 3 * edge.b;
       double d0 = pb[0] - pa[0], d1 = pb[1] - pa[1], d2 = pb[2] - pa[2];
       const double q = (d0 * d0 + d1 * d1 + d2 * d2) * edge.inverse_square;
+      const StrainBand& band = own ? own_bands_[k] : common;
       if (!band.violated(q)) continue;
       if (q == 0) continue;  // no direction to correct along; the check refuses if it stays so
       const double wanted = q < band.low ? band.target_low : band.target_high;
@@ -121,6 +135,7 @@ class GaussSeidel final : public VelocityFilter {
   int max_iterations_;
   double relaxation_;
   StrainBand band_;
+  std::vector<StrainBand> own_bands_;
   std::vector<EdgeRecord> records_;
   std::vector<int> permutation_;
   std::uint64_t random_;  // SplitMix64 state

@@ -28,11 +28,15 @@ EdgeConstraints::EdgeConstraints(const Problem& problem, double strain_limit,
     inverse_rest_length[k] = 1 / rest_length[k];
     wa[k] = problem.inverse_mass()[a[k]];
     wb[k] = problem.inverse_mass()[b[k]];
+    if (problem.limit_scale().empty()) continue;
+    limit_scale_.push_back(problem.limit_scale()[e]);
+    own_.emplace_back(limit_scale_[k] * strain_limit);
   }
 }
 
-bool EdgeConstraints::linearize(const Positions& x, Eigen::Matrix3Xd& u, Eigen::VectorXd& c,
-                                double target) const {
+template <bool own>
+bool EdgeConstraints::linearize_all(const Positions& x, Eigen::Matrix3Xd& u, Eigen::VectorXd& c,
+                                    double target) const {
   double* uk = u.data();
   double* ck = c.data();
   const std::size_t m = count();
@@ -43,14 +47,20 @@ bool EdgeConstraints::linearize(const Positions& x, Eigen::Matrix3Xd& u, Eigen::
     uk[1] = 2 * s.y;
     uk[2] = 2 * s.z;
     ck[k] = rest_length[k] * (s.squared - 1);
-    violations += outside(s);
+    violations += outside<own>(s, k);
   }
-  if (target > 0) {
-    const double low = target * (permissible_low - 1), high = target * (permissible_high - 1);
-    for (std::size_t k = 0; k < m; ++k)
-      ck[k] -= std::clamp(ck[k], low * rest_length[k], high * rest_length[k]);
+  for (std::size_t k = 0; target > 0 && k < m; ++k) {
+    const double least = target * rest_length[k] * (low<own>(k) - 1);
+    const double most = target * rest_length[k] * (high<own>(k) - 1);
+    ck[k] -= std::clamp(ck[k], least, most);
   }
   return violations == 0;
+}
+
+bool EdgeConstraints::linearize(const Positions& x, Eigen::Matrix3Xd& u, Eigen::VectorXd& c,
+                                double target) const {
+  return own_.empty() ? linearize_all<false>(x, u, c, target)
+                      : linearize_all<true>(x, u, c, target);
 }
 
 void EdgeConstraints::gradient(const Positions& x, Eigen::Matrix3Xd& u) const {
@@ -68,13 +78,18 @@ void EdgeConstraints::rate(const Eigen::Matrix3Xd& u, const Positions& v,
 }
 
 bool EdgeConstraints::permissible(const Positions& x) const {
+  return own_.empty() ? all_permissible<false>(x) : all_permissible<true>(x);
+}
+
+template <bool own>
+bool EdgeConstraints::all_permissible(const Positions& x) const {
   constexpr std::size_t block =
       128;  // long enough to vectorize, short enough that a violation is found soon
   const std::size_t m = a.size();
   for (std::size_t begin = 0; begin < m; begin += block) {
     const std::size_t end = std::min(begin + block, m);
     int violations = 0;
-    for (std::size_t k = begin; k < end; ++k) violations += outside(scaled(x.data(), k));
+    for (std::size_t k = begin; k < end; ++k) violations += outside<own>(scaled(x.data(), k), k);
     if (violations != 0) return false;
   }
   return true;
@@ -82,10 +97,13 @@ bool EdgeConstraints::permissible(const Positions& x) const {
 
 EdgeConstraints::Worst EdgeConstraints::worst(const Positions& x) const {
   Worst worst;
+  double most = -1;
   for (std::size_t k = 0; k < a.size(); ++k) {
     double strain = (x.col(b[k]) - x.col(a[k])).norm() * inverse_rest_length[k] - 1;
     if (!std::isfinite(strain)) strain = std::numeric_limits<double>::infinity();
-    if (worst.edge < 0 || std::abs(strain) > std::abs(worst.strain)) {
+    const double over = std::abs(strain) / (own_.empty() ? 1 : limit_scale_[k]);
+    if (over > most) {
+      most = over;
       worst = {problem_edge(static_cast<int>(k)), strain};
     }
   }

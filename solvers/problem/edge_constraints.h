@@ -46,10 +46,12 @@ class EdgeConstraints {
   // dC/dt = J v (m entries), J given by u, v 3 x n.
   void rate(const Eigen::Matrix3Xd& u, const Positions& v, Eigen::VectorXd& c) const;
 
-  // Whether |strain| <= limit on every edge; leaves early when not. False on NaN.
+  // Whether |strain| <= limit, or its own multiple of it, on every edge; leaves early when not.
+  // False on NaN.
   bool permissible(const Positions& x) const;
 
-  // The edge (problem's number) of largest |strain|, and that; a non-finite one counts as infinite.
+  // The edge (problem's number) of largest |strain| over its limit, and its strain; one that is not
+  // finite counts as infinite.
   struct Worst {
     int edge = -1;
     double strain = 0;
@@ -61,8 +63,9 @@ class EdgeConstraints {
 
   std::vector<int> a, b;
   std::vector<double> rest_length, inverse_rest_length;
-  std::vector<double> wa, wb;                // inverse masses of both ends
-  double permissible_low, permissible_high;  // bounds on |d|^2 / l^2
+  std::vector<double> wa, wb;  // inverse masses of both ends
+  // Bounds on |d|^2 / l^2; with limits that differ, of the tightest.
+  double permissible_low, permissible_high;
 
  private:
   struct Scaled {  // d / l of an edge, and its square
@@ -73,10 +76,28 @@ class EdgeConstraints {
     const double s0 = (pb[0] - pa[0]) * il, s1 = (pb[1] - pa[1]) * il, s2 = (pb[2] - pa[2]) * il;
     return {s0, s1, s2, s0 * s0 + s1 * s1 + s2 * s2};
   }
-  bool outside(const Scaled& s) const {  // the negation catches NaN
-    return !(s.squared >= permissible_low && s.squared <= permissible_high);
+  // own: whether limits differ.
+  template <bool own>
+  double low(std::size_t k) const {
+    return own ? own_[k].low : permissible_low;
   }
+  template <bool own>
+  double high(std::size_t k) const {
+    return own ? own_[k].high : permissible_high;
+  }
+  template <bool own>
+  bool outside(const Scaled& s, std::size_t k) const {  // the negation catches NaN
+    return !(s.squared >= low<own>(k) && s.squared <= high<own>(k));
+  }
+  template <bool own>
+  bool linearize_all(const Positions& x, Eigen::Matrix3Xd& u, Eigen::VectorXd& c,
+                     double target) const;
+  template <bool own>
+  bool all_permissible(const Positions& x) const;
+
   std::vector<int> order_;
+  std::vector<PermissibleSquares> own_;  // an edge; empty: limits do not differ
+  std::vector<double> limit_scale_;      // as the problem's, in this order
 };
 
 }  // namespace inextensible

@@ -64,6 +64,15 @@ void check_bending(const Bending& bending, std::size_t vertices) {
   }
 }
 
+void check_limits(const std::vector<double>& scale, std::size_t edges) {
+  if (!scale.empty() && scale.size() != edges)
+    refuse("there are ", edges, " edges but ", scale.size(), " scales of their strain limit");
+  for (std::size_t k = 0; k < scale.size(); ++k) {
+    if (!(scale[k] >= 1 && std::isfinite(scale[k])))
+      refuse("edge ", k, ": the scale of its strain limit is not a number of at least 1");
+  }
+}
+
 void check_drag(const std::vector<double>& drag, std::size_t vertices) {
   if (!drag.empty() && drag.size() != vertices)
     refuse("there are ", vertices, " vertices but ", drag.size(), " drag coefficients");
@@ -152,6 +161,7 @@ Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
   check_bending(parts_.bending, n);
   put_in_order(parts_.bending);
   bending_runs_ = runs_of(parts_.bending);
+  check_limits(parts_.limit_scale, parts_.edges.size());
   check_drag(parts_.drag, n);
   if (parts_.body_motion && !parts_.collider) refuse("a body's motion without a collider");
   if (parts_.pins_follow_body && !parts_.body_motion)

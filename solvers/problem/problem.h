@@ -33,10 +33,13 @@ struct Springs {
 
 // What a problem is made from; see Problem for the conditions.
 struct ProblemParts {
-  std::vector<double> mass;              // kg, one a vertex
-  std::vector<int> pinned;               // vertices that no force moves
-  std::vector<Edge> edges;               // constrained (warp and weft) edges
-  std::vector<double> rest_length;       // m, one a constrained edge
+  std::vector<double> mass;         // kg, one a vertex
+  std::vector<int> pinned;          // vertices that no force moves
+  std::vector<Edge> edges;          // constrained (warp and weft) edges
+  std::vector<double> rest_length;  // m, one a constrained edge
+  // The strain limit of each constrained edge over that of the tightest, at least 1: that of warp
+  // and weft may differ. Empty: all are 1. A method may keep the tightest everywhere.
+  std::vector<double> limit_scale;
   Eigen::Vector3d gravity{0, -9.81, 0};  // m/s^2
   std::optional<Springs> shear;
   Bending bending;           // empty: none
@@ -67,6 +70,7 @@ class Problem {
   const std::vector<int>& pinned() const { return parts_.pinned; }
   const std::vector<Edge>& edges() const { return parts_.edges; }
   const std::vector<double>& rest_length() const { return parts_.rest_length; }
+  const std::vector<double>& limit_scale() const { return parts_.limit_scale; }
   double shortest_rest_length() const { return shortest_rest_length_; }
   double longest_rest_length() const { return longest_rest_length_; }  // 0 without edges
   double total_mass() const { return total_mass_; }

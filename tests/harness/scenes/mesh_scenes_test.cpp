@@ -379,6 +379,53 @@ TEST(MeshScene, TheTextureTellsWarpFromWeft) {
   }
 }
 
+// A cloth that hangs from its upper edge, with weft upright. Weft may stretch three times as far.
+TEST(MeshScene, WeftMayHaveALimitOfItsOwn) {
+  constexpr int n = 9;
+  std::ostringstream text;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      text << "v " << 0.1 * j << ' ' << -0.1 * i << " 0\nvt " << j << ' ' << -i << '\n';
+  for (int a = 1; a < n * (n - 1); ++a)
+    if (a % n != 0)
+      text << concat("f ", a, '/', a, ' ', a + n, '/', a + n, ' ', a + n + 1, '/', a + n + 1, ' ',
+                     a + 1, '/', a + 1, '\n');
+  const std::string name = mesh(text.str(), ",pins=y>-0.05");
+  constexpr double limit = 0.002;
+  for (const auto& [weft_limit, scale_warp] : {std::pair(3.0, 1.0), {1 / 3.0, 3.0}}) {
+    const Scene scene = built_scene(name, {{"weft_limit", weft_limit}});
+    const Problem& problem = *scene.problem;
+    const auto is_warp = [&](std::size_t k) {
+      const auto [a, b] = problem.edges()[k];
+      return std::abs(scene.start.x(1, a) - scene.start.x(1, b)) < 1e-9;
+    };
+    for (std::size_t k = 0; k < problem.edges().size(); ++k)
+      EXPECT_NEAR(problem.limit_scale()[k], is_warp(k) ? scale_warp : 3 / scale_warp, 1e-12);
+    for (const char* solver : {"gauss_seidel", "fast_projection", "shake", "icd", "jacobi",
+                               "gauss_seidel_colored@bdf2", "yarn_projection", "admm"}) {
+      const auto stepper = inextensible::make_stepper(solver, scene.problem, {limit});
+      State state = scene.start;
+      double most = 0, most_of_tight = 0, raw = 0;
+      for (int i = 0; i < 100; ++i) {
+        ASSERT_TRUE(stepper->advance(state, 0.005)) << solver;
+        most = std::max(most, strain_range(problem, state.x).most);
+        for (std::size_t k = 0; k < problem.edges().size(); ++k) {
+          const auto [a, b] = problem.edges()[k];
+          const double strain =
+              std::abs((state.x.col(a) - state.x.col(b)).norm() / problem.rest_length()[k] - 1);
+          raw = std::max(raw, strain);
+          if (problem.limit_scale()[k] == 1) most_of_tight = std::max(most_of_tight, strain);
+        }
+      }
+      EXPECT_LE(most, limit * (1 + 1e-9)) << solver << ", over what each may have";
+      EXPECT_LE(most_of_tight, limit * (1 + 1e-9)) << solver;
+      if (weft_limit > 1 && std::string(solver) == "gauss_seidel") {
+        EXPECT_GT(raw, 1.5 * limit);
+      }
+    }
+  }
+}
+
 TEST(MeshScene, BeginsAwayFromItsRestShape) {
   const std::string flat = file_with("pattern.obj", square(4));
   std::string folded = std::regex_replace(square(4), std::regex("v (\\S+) (\\S+) (\\S+)"),
