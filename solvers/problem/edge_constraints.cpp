@@ -50,8 +50,8 @@ bool EdgeConstraints::linearize_all(const Positions& x, Eigen::Matrix3Xd& u, Eig
     violations += outside<own>(s, k);
   }
   for (std::size_t k = 0; target > 0 && k < m; ++k) {
-    const double least = target * rest_length[k] * (low<own>(k) - 1);
-    const double most = target * rest_length[k] * (high<own>(k) - 1);
+    const double least = target * (low<own>(k) - 1) * rest_length[k];
+    const double most = target * (high<own>(k) - 1) * rest_length[k];
     ck[k] -= std::clamp(ck[k], least, most);
   }
   return violations == 0;
