@@ -73,7 +73,8 @@ use() {
   local words=()
   case $1 in
     sweep) words=(strain --profile pairs --scene chain --dry-run) ;;
-    show | results | budget) words=(small.json) ;;
+    show | results) words=(small.json) ;;
+    repeat) words=(small.json --no-wait) ;;
     plot) words=(small.json --out drawn) ;;
     report) words=(small.json --out page.html) ;;
     answers) words=(--answer net_place --solver fast_projection --no-plots --out known.json) ;;
