@@ -14,7 +14,7 @@ constexpr int default_width = 480;
 
 using analysis::percent;
 
-const std::set<std::string> picture_endings{".webp", ".mp4", ".png"};
+const std::set<std::string> picture_endings{".webp", ".png"};
 
 std::string name_of(const FilmRun& run, const std::string& solver) {
   return solver + ", " + percent(run.strain_limit) + ", steps of " + step_text(run.step) + " s";
@@ -58,7 +58,7 @@ struct Film : SceneOptions {
     command.option("--width", width, "of each picture; default: 480", "PIXELS",
                    {.least = 16, .most = 4096, .whole = true});
     command.option("--out", out,
-                   ".webp or .mp4: a film; .png: stills; .obj: for other programs; "
+                   ".webp: a film; .png: stills; .obj: for other programs; "
                    "default: results/local/film-<scene>.webp, .png with --stills",
                    "FILE");
   }
@@ -97,7 +97,7 @@ struct Film : SceneOptions {
 
   void check_format(const std::string& ending) const {
     if (!picture_endings.contains(ending) && ending != ".obj")
-      throw UsageError("--out '" + out + "': must end in .webp, .mp4, .png (stills) or .obj");
+      throw UsageError("--out '" + out + "': must end in .webp, .png (stills) or .obj");
     if (!stills.empty() && ending != ".png")
       throw UsageError("--stills: --out '" + out + "' must end in .png");
     if (width > 0 && ending == ".obj") throw UsageError("--width: '" + out + "' has no pictures");

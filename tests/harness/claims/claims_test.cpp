@@ -177,23 +177,6 @@ TEST(Claims, OfTwoSizesTheLargerCounts) {
   EXPECT_EQ(verdict("C3", points).verdict, "reproduced");
 }
 
-TEST(ParabolaSag, HasAnArcLongerByTheStrain) {
-  for (const double strain : {0.5, 0.1, 0.01, 1e-4}) {
-    for (const double length : {1.0, 3.0}) {
-      const double sag = claims::parabola_sag(length, strain);
-      const auto height = [=](double s) { return -4 * sag * s * (1 - s); };
-      constexpr int parts = 20000;
-      double arc = 0;
-      for (int i = 0; i < parts; ++i) {
-        const double from = static_cast<double>(i) / parts, to = from + 1.0 / parts;
-        arc += std::hypot(length / parts, height(to) - height(from));
-      }
-      EXPECT_NEAR(arc / length, 1 + strain, 1e-6 * strain + 1e-9);
-    }
-  }
-  EXPECT_NEAR(claims::parabola_sag(1, 1e-8) / std::sqrt(3e-8 / 8), 1, 1e-3);
-}
-
 // Points of one method at limits from 10 % on down by tens, one for each of what its marks sag.
 std::vector<json> sagging(const char* scene, const std::string& solver, const json& parameters,
                           const std::vector<json>& sags) {
