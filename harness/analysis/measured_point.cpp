@@ -2,7 +2,6 @@
 
 #include <iomanip>
 
-#include "harness/base/text.h"
 #include "harness/points/point_json.h"
 
 namespace harness::analysis {

@@ -1,6 +1,5 @@
 // C4, C7 to C10, C12 to C14 and C16: what works at all, residuals, shapes and strains.
 
-#include "harness/base/text.h"
 #include "harness/claims/claims.h"
 
 namespace harness::claims {
@@ -179,19 +178,6 @@ Verdict strain_after_collision(const Points& points) {
                    " points; largest strain after collision over its limit: " + found.measured;
   found.verdict = verdict_of_counts(kept, all - kept, all);
   return found;
-}
-
-double parabola_sag(double length, double strain) {
-  // Over the length, with a = 4 sag / length: (sqrt(1 + a^2) + asinh(a) / a) / 2.
-  const auto arc = [](double a) {
-    return a > 0 ? 0.5 * (std::sqrt(1 + a * a) + std::asinh(a) / a) : 1;
-  };
-  double low = 0, high = 4 * (1 + strain);  // the arc is longer than a / 2
-  for (int i = 0; i < 100; ++i) {
-    const double middle = 0.5 * (low + high);
-    (arc(middle) < 1 + strain ? low : high) = middle;
-  }
-  return 0.25 * length * low;
 }
 
 Slip slip_of(const Point& point) {

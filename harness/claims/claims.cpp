@@ -5,7 +5,6 @@
 
 #include "harness/analysis/plane.h"
 #include "harness/base/files.h"
-#include "harness/base/text.h"
 #include "harness/points/result_file.h"
 
 namespace harness::claims {

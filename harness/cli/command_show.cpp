@@ -1,6 +1,5 @@
 // bench show, claims, results, report and plot: result files printed and drawn.
 
-#include "harness/analysis/plane.h"
 #include "harness/answers/answer.h"
 #include "harness/claims/claims.h"
 #include "harness/cli/command.h"

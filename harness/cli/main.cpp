@@ -1,8 +1,6 @@
 // bench: the command line. Only this file includes CLI11, which takes ten seconds to compile.
 #include <CLI/CLI.hpp>
-#include <cerrno>
 #include <cstdlib>
-#include <cstring>
 
 #include "harness/base/child_process.h"
 #include "harness/cli/command.h"

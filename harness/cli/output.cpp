@@ -4,7 +4,6 @@
 
 #include "harness/answers/answer.h"
 #include "harness/base/child_process.h"
-#include "harness/base/clock.h"
 #include "harness/claims/claims.h"
 #include "harness/cli/command.h"
 #include "harness/points/context.h"

@@ -4,7 +4,6 @@
 #include <set>
 
 #include "harness/base/statistics.h"
-#include "harness/base/text.h"
 #include "harness/points/result_file.h"
 
 namespace harness {

@@ -1,5 +1,4 @@
 #include <Eigen/Geometry>
-#include <atomic>
 #include <future>
 #include <mutex>
 #include <numbers>

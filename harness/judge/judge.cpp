@@ -3,8 +3,6 @@
 #include <numeric>
 
 #include "harness/base/statistics.h"
-#include "harness/base/text.h"
-#include "harness/judge/mechanics.h"
 #include "solvers/problem/forces.h"
 
 namespace harness {

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "harness/base/files.h"
-#include "harness/base/text.h"
 
 namespace harness {
 

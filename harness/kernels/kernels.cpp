@@ -11,24 +11,13 @@
 // them).
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
-#include <array>
 #include <bit>
-#include <cmath>
 #include <cstdio>
-#include <map>
-#include <memory>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "harness/base/clock.h"
-#include "harness/base/text.h"
 #include "harness/base/timing_lock.h"
 #include "harness/points/context.h"
 #include "harness/scenes/scene.h"
-#include "solvers/linear/spd_solver.h"
 #include "solvers/problem/forces.h"
 #include "solvers/registry.h"
 #include "solvers/systems/constraint_system.h"

@@ -1,12 +1,10 @@
 // The Python module `inextensible`: bench's scenes, solvers and judge on numpy arrays.
 #include <pybind11/stl.h>
 
-#include "harness/base/text.h"
 #include "harness/judge/drive.h"
 #include "harness/judge/mechanics.h"
 #include "harness/python/views.h"
 #include "solvers/c_method.h"
-#include "solvers/problem/forces.h"
 
 namespace inextensible::python {
 namespace {

@@ -2,8 +2,6 @@
 
 #include <numeric>
 
-#include "harness/base/text.h"
-
 namespace harness {
 namespace {
 

@@ -3,7 +3,6 @@
 #include <random>
 #include <set>
 
-#include "harness/base/text.h"
 #include "harness/run/step_search.h"
 
 namespace harness {

@@ -7,7 +7,6 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <cmath>
-#include <stdexcept>
 
 #include "harness/scenes/meshes.h"
 

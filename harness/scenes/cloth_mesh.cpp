@@ -6,7 +6,6 @@
 #include <numbers>
 #include <set>
 
-#include "harness/base/text.h"
 #include "solvers/problem/closed_surface.h"
 
 namespace harness {

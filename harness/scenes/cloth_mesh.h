@@ -2,8 +2,6 @@
 // weft, and a fabric's forces in physical units.
 #pragma once
 
-#include <utility>
-
 #include "harness/scenes/mesh_file.h"
 #include "harness/scenes/meshes.h"
 

@@ -5,7 +5,6 @@
 #include <gsl/gsl_odeiv2.h>
 
 #include <cmath>
-#include <stdexcept>
 
 namespace harness {
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 
 #include "harness/scenes/cloth_mesh.h"
 #include "solvers/problem/triangle_collider.h"

@@ -1,11 +1,9 @@
 #include "harness/stability/conformance.h"
 
 #include "harness/base/child_process.h"
-#include "harness/base/text.h"
 #include "harness/scenes/pendulum.h"
 #include "harness/stability/cases.h"
 #include "harness/stability/stability.h"
-#include "solvers/problem/forces.h"
 
 namespace harness {
 

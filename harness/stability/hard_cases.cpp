@@ -1,12 +1,5 @@
 // The scenes of the hard cases; configs/hard_cases.json says how they are expected to end.
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <map>
-#include <memory>
-#include <random>
 
-#include "harness/base/text.h"
 #include "harness/stability/cases.h"
 #include "harness/stability/hard_case.h"
 

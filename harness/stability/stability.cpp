@@ -2,10 +2,8 @@
 
 #include <Eigen/SPQRSupport>
 
-#include "harness/base/text.h"
 #include "harness/points/schema.h"
 #include "harness/stability/cases.h"
-#include "solvers/problem/forces.h"
 
 namespace harness {
 

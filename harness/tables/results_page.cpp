@@ -1,6 +1,5 @@
 #include <iterator>
 
-#include "harness/base/text.h"
 #include "harness/claims/claims.h"
 #include "harness/tables/tables.h"
 

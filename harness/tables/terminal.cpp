@@ -1,5 +1,4 @@
 
-#include "harness/base/text.h"
 #include "harness/tables/tables.h"
 
 namespace harness {

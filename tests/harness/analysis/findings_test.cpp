@@ -1,5 +1,4 @@
 // The strain-error grid and findings of invented times.
-#include <gtest/gtest.h>
 
 #include "harness/analysis/plane.h"
 #include "harness/points/result_file.h"

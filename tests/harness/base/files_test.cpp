@@ -2,14 +2,12 @@
 // no text makes a document unreadable, and no expression runs for ever.
 #include "harness/base/files.h"
 
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include <fstream>
 #include <thread>
 
 #include "harness/base/json.h"
-#include "harness/base/text.h"
 #include "support/refusal.h"
 
 namespace harness {

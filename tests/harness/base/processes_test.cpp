@@ -4,7 +4,6 @@
 #include <sys/wait.h>
 
 #include <array>
-#include <chrono>
 #include <cstdlib>
 #include <thread>
 

@@ -2,8 +2,6 @@
 // clock, without processes.
 #include "harness/compare/comparison.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <random>
 

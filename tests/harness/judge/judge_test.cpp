@@ -8,7 +8,6 @@
 #include <Eigen/Geometry>
 #include <random>
 
-#include "harness/judge/mechanics.h"
 #include "support/scenes.h"
 
 namespace harness {

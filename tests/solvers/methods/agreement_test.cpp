@@ -3,7 +3,6 @@
 
 #include "harness/judge/mechanics.h"
 #include "solvers/problem/edge_constraints.h"
-#include "solvers/registry.h"
 #include "support/motion.h"
 
 namespace inextensible {
