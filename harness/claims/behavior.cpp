@@ -256,7 +256,7 @@ Verdict failure_configurations(const Points& points) {
   Verdict found;
   bool shake_always = true, shake_sometimes = false, others = true;
   std::string details;
-  for (const std::string q : {"Q1", "Q2", "Q3", "Q4"}) {
+  for (const std::string q : {"Q1", "Q2", "Q3", "Q4"})
     for (const std::string solver : {shake.name, fast_projection.name, icd.name}) {
       const auto cell = std::ranges::find_if(points.matrix, [&](const json* c) {
         return c->at("case") == q && c->at("solver") == solver;
@@ -273,7 +273,6 @@ Verdict failure_configurations(const Points& points) {
       shake_always = shake_always && (q == "Q3" || outcome == "refused");
       shake_sometimes = shake_sometimes || (q != "Q3" && fixed == "refused");
     }
-  }
   found.measured =
       "SHAKE: " + details + "; fast projection and ICD: " +
       (others ? "all four survived, Q3 at least with smaller steps" : "not all survived");

@@ -228,10 +228,9 @@ void print_claims(std::ostream& out, const std::vector<ClaimVerdict>& claims) {
 
 void print_claims_markdown(std::ostream& out, const std::vector<ClaimVerdict>& claims) {
   out << "| | claim | verdict | measured |\n|---|---|---|---|\n";
-  for (const auto& c : claims) {
+  for (const auto& c : claims)
     out << "| " << c.id << ", " << c.where << " | " << c.statement << " | " << c.verdict << " | "
         << c.measured << " |\n";
-  }
 }
 
 }  // namespace harness

@@ -25,12 +25,11 @@ void run_side(Side side, PairedPoint& point, const RunOne& run) {
 }
 
 void run_pairs(const std::vector<PairedPoint*>& points, int pairs, const RunOne& run) {
-  for (int pair = 0; pair < pairs; ++pair) {
+  for (int pair = 0; pair < pairs; ++pair)
     for (PairedPoint* point : points) {
       run_side(pair % 2 == 0 ? Side::old_one : Side::new_one, *point, run);
       run_side(pair % 2 == 0 ? Side::new_one : Side::old_one, *point, run);
     }
-  }
 }
 
 // "Same" is a statement: it takes runs on both sides, and times that exclude a change as large as

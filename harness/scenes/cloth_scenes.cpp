@@ -195,20 +195,18 @@ ClothMesh disc_of(const SceneParameters& p) {
   };
   ClothMesh disc;
   std::vector<int> number(n * n, -1);
-  for (int i = 0; i < n; ++i) {
+  for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {
       if (!quad(i, j) && !quad(i - 1, j) && !quad(i, j - 1) && !quad(i - 1, j - 1)) continue;
       number[i * n + j] = static_cast<int>(disc.vertices.size());
       disc.vertices.emplace_back(place(j), 0, place(i));
       disc.held.push_back(std::hypot(place(i), place(j)) <= p.at("table"));
     }
-  }
-  for (int i = 0; i < n; ++i) {
+  for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {
       const int* at = number.data() + i * n + j;
       if (quad(i, j)) disc.quads.push_back({at[0], at[1], at[n + 1], at[n]});
     }
-  }
   return disc;
 }
 

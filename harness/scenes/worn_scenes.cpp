@@ -28,14 +28,13 @@ inextensible::TriangleMesh lathed(const std::vector<Ring>& rings, int segments) 
     return 2 + (ring - 1) * segments + segment % segments;
   };
   mesh.vertices = {{0, rings.front().y, 0}, {0, rings.back().y, 0}};
-  for (int r = 1; r < last; ++r) {
+  for (int r = 1; r < last; ++r)
     for (int s = 0; s < segments; ++s) {
       const double angle = 2 * pi * s / segments;
       mesh.vertices.emplace_back(rings[r].radius * std::cos(angle), rings[r].y,
                                  rings[r].radius * std::sin(angle));
     }
-  }
-  for (int r = 0; r < last; ++r) {
+  for (int r = 0; r < last; ++r)
     for (int s = 0; s < segments; ++s) {
       const int a = vertex(r, s), b = vertex(r, s + 1), c = vertex(r + 1, s + 1),
                 d = vertex(r + 1, s);
@@ -46,7 +45,6 @@ inextensible::TriangleMesh lathed(const std::vector<Ring>& rings, int segments) 
       mesh.triangles.push_back({a, d, b});
       if (r + 1 < last) mesh.triangles.push_back({b, d, c});
     }
-  }
   return mesh;
 }
 

@@ -20,7 +20,7 @@ Draft cloth(int n, bool diagonals) {
   const double l = 1.0 / (n - 1);
   Draft mesh = points(n * n, 0.2 / (n * n));
   const auto vertex = [n](int i, int j) { return i * n + j; };
-  for (int i = 0; i < n; ++i) {
+  for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {
       mesh.scene.start.x.col(vertex(i, j)) << j * l, 0, i * l;
       if (j + 1 < n) mesh.constrain(vertex(i, j), vertex(i, j + 1), l);
@@ -28,7 +28,6 @@ Draft cloth(int n, bool diagonals) {
       if (diagonals && i + 1 < n && j + 1 < n)
         mesh.constrain(vertex(i, j), vertex(i + 1, j + 1), std::sqrt(2.0) * l);
     }
-  }
   mesh.parts.pinned = {vertex(0, 0), vertex(0, n - 1)};
   return mesh;
 }
@@ -58,13 +57,12 @@ Draft midpoint_cloth(int n) {
       mesh.parts.mass[first] += mass / 3;
     }
   };
-  for (int i = 0; i + 1 < n; ++i) {
+  for (int i = 0; i + 1 < n; ++i)
     for (int j = 0; j + 1 < n; ++j) {
       const int v = i * n + j;  // and the diagonal from it
       add({v, v + 1, v + n + 1});
       add({v, v + n + 1, v + n});
     }
-  }
   mesh.parts.pinned = {midpoint_of.at({0, 1}), midpoint_of.at({n - 2, n - 1})};
   return mesh;
 }

@@ -50,7 +50,7 @@ bool Expectation::about(const Backend& backend) const {
 }
 
 void add_expectations(std::vector<HardCase>& cases) {
-  for (HardCase& c : cases) {
+  for (HardCase& c : cases)
     for (const json& entry : entries_about(c)) {
       if (c.value <= entry.value("above", -HUGE_VAL) || c.value >= entry.value("below", HUGE_VAL))
         continue;
@@ -62,7 +62,6 @@ void add_expectations(std::vector<HardCase>& cases) {
       expected.why = entry.at("why");
       if (entry.contains("or")) expected.other = {entry.at("or"), entry.at("because")};
     }
-  }
 }
 
 Expectation HardCase::expectation(const std::string& solver) const {

@@ -298,12 +298,11 @@ std::vector<HardCase> hard_cases(const std::string& profile) {
     if (found == builders.end())
       throw UsageError("hard cases: nothing in harness/stability/hard_cases.cpp builds '" + key +
                        "'");
-    for (const double value : over.empty() ? std::vector{unknown} : values.at(over)) {
+    for (const double value : over.empty() ? std::vector{unknown} : values.at(over))
       all.push_back({row, over.empty() ? name : name + "/" + number_text(value), what,
                      [build = found->second, value] { return build(value); }, value});
-    }
   }
-  for (const auto& [what, state, put] : impossible_numbers) {
+  for (const auto& [what, state, put] : impossible_numbers)
     for (const double value : {std::numeric_limits<double>::quiet_NaN(), HUGE_VAL, 0.0, -1.0}) {
       if (state && std::isfinite(value)) continue;
       const std::string name = std::string(what) + " " + number_text(value);
@@ -313,7 +312,6 @@ std::vector<HardCase> hard_cases(const std::string& profile) {
                        return trial_of(std::move(mesh), 0.01, 3);
                      }});
     }
-  }
   add_expectations(all);
   return all;
 }

@@ -126,7 +126,7 @@ void print_failures(std::ostream& out, const Runs& runs, bool all) {
 // Plug-in solvers, their versions, and the share of time that copying states takes.
 void print_plugins(std::ostream& out, const Runs& runs, const json& plugins) {
   if (!plugins.empty()) out << '\n';
-  for (const auto& plugin : plugins) {
+  for (const auto& plugin : plugins)
     for (const auto& solver : plugin.at("solvers")) {
       double copy = 0, all = 0;  // s
       for (const Point& point : runs.points) {
@@ -140,7 +140,6 @@ void print_plugins(std::ostream& out, const Runs& runs, const json& plugins) {
       if (copy > 0) out << "; copying its state takes " << percent(copy / all) << " of its time";
       out << '\n';
     }
-  }
 }
 
 void print_noise(std::ostream& out, const json& document) {

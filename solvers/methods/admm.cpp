@@ -48,10 +48,9 @@ class Admm final : public VelocityFilter {
         longest_(1 + options.number("target") * options.strain_limit),
         matrix_(problem, ends_of(problem), "auto", 1),
         target_(3, problem.vertices()) {
-    for (const auto [a, b] : problem.edges()) {
+    for (const auto [a, b] : problem.edges())
       weight_.push_back(options.number("penalty") /
                         (problem.inverse_mass()[a] + problem.inverse_mass()[b]));
-    }
     rhs_.setZero(4, static_cast<Eigen::Index>(matrix_.vertex.size()));
     if (problem.contact_inside()) anchor_.resize(3, problem.vertices());
     z_.resize(3, problem.constraints());

@@ -52,11 +52,10 @@ class FastProjection final : public VelocityFilter {
         u_start_(3, along == Along::middle ? problem.constraints() : 0),
         mu_(problem.constraints()),
         excess_(problem.constraints()) {
-    if ((smoothing_sweeps_ > 0 || sweeps_before_ > 0) && !system_.chain()) {
+    if ((smoothing_sweeps_ > 0 || sweeps_before_ > 0) && !system_.chain())
       passes_ = std::make_unique<StrainPasses>(
           StrainPasses::by_mass(problem, {options.strain_limit, options.number("smoothing_target")},
                                 options.number("smoothing_relaxation")));
-    }
   }
 
   StepResult apply(const Positions& x_start, double /*h*/, Iterate x, WorkCounters& work) override {
@@ -162,10 +161,9 @@ class FastProjection final : public VelocityFilter {
         damping *= 10;
         mu_ = excess_;
       }
-      if (!(damping < largest_damping)) {
+      if (!(damping < largest_damping))
         return refuse(Status::not_converged, j, edges, x,
                       "no damped projection lowers the constraint error");
-      }
       const double predicted_error = damped_prediction(damping);
       correct(x);
       if (observer_) show(j + 1, x);

@@ -94,10 +94,9 @@ class ImplicitSprings final : public Stepper {
     double scale = 1;
     for (int halvings = 0;; ++halvings) {
       trial_ = x;
-      for (std::size_t f = 0; f < energy_.matrix().vertex.size(); ++f) {
+      for (std::size_t f = 0; f < energy_.matrix().vertex.size(); ++f)
         trial_.col(energy_.matrix().vertex[f]) +=
             scale * step_.segment<3>(static_cast<Eigen::Index>(3 * f));
-      }
       const double next = energy_.value(trial_);
       count_evaluations();
       // Near the minimum the decrease drowns in rounding: a step below the tolerance is taken.
@@ -166,10 +165,9 @@ class ImplicitSprings final : public Stepper {
         count_evaluations();
       } else {
         ++work_.assemblies;
-        if (!factor_counted(*energy_.matrix().solver, work_)) {
+        if (!factor_counted(*energy_.matrix().solver, work_))
           return {std::isfinite(current) ? Status::singular : Status::not_finite, j, -1, 0,
                   "the Newton matrix is singular"};
-        }
       }
       step_ = -energy_.gradient();
       energy_.matrix().solver->solve(
@@ -186,10 +184,9 @@ class ImplicitSprings final : public Stepper {
         reuse = false;
         continue;
       }
-      if (found == Search::failed) {
+      if (found == Search::failed)
         return {Status::not_converged, j, -1, 0,
                 "no step along Newton's direction lowers the energy"};
-      }
       energy_.predict_tension(x, trial_);
       count_evaluations();
       x.swap(trial_);

@@ -69,9 +69,8 @@ inline SettingInfo word_setting(const char* name, const char* initial, const cha
 
 inline SettingInfo schur_solver() {
   std::vector<const char*> names{"auto"};
-  for (const SpdSolverRow& row : spd_solvers()) {
+  for (const SpdSolverRow& row : spd_solvers())
     if (row.takes != Takes::block_tridiagonal) names.push_back(row.name);
-  }
   return word_setting("linear_solver", "auto", "factorization of J W J^T", std::move(names));
 }
 

@@ -70,9 +70,8 @@ class VertexBlockDescent final : public Stepper {
       if (!contacts) break;
       passes_.read_pushes(*contacts);
       if (contacts->find(x, work_) == 0) break;
-      if (round == most_contact_rounds) {
+      if (round == most_contact_rounds)
         return {Status::not_converged, result.iterations, -1, 0, "the contact set did not settle"};
-      }
     }
     phases_.unconstrained += stopwatch();
     return result;

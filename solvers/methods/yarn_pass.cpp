@@ -56,7 +56,7 @@ void YarnPass::add_bundle(const Problem& problem, std::span<const Yarn> yarns, b
   const auto links = static_cast<int>(yarns.front().edges.size());  // the longest comes first
   bundles_.push_back(
       {links, static_cast<int>(place_.size()) / lanes, static_cast<int>(yarns.size()), joined});
-  for (int i = 0; i <= links; ++i) {
+  for (int i = 0; i <= links; ++i)
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       // A lane without a yarn stays at the first one's begin, a short yarn at its end.
       const bool taken = lane < yarns.size();
@@ -70,12 +70,11 @@ void YarnPass::add_bundle(const Problem& problem, std::span<const Yarn> yarns, b
       rest_.push_back(link ? problem.rest_length()[yarn.edges[k]] : 0);
       inverse_rest_.push_back(link ? 1 / rest_.back() : 0);
     }
-  }
 }
 
 void YarnPass::take_middle_from(const Positions& x_start) {
   start_g_.resize(3 * place_.size());
-  for (const Bundle& bundle : bundles_) {
+  for (const Bundle& bundle : bundles_)
     for (int row = bundle.first; row < bundle.first + bundle.links; ++row) {
       const int* place = place_.data() + row * lanes;
       double* g = start_g_.data() + 3 * row * lanes;
@@ -86,7 +85,6 @@ void YarnPass::take_middle_from(const Positions& x_start) {
           g[axis * lanes + i] = (b[axis] - a[axis]) * inverse_rest_[row * lanes + i];
       }
     }
-  }
 }
 
 struct YarnPass::View {
@@ -107,9 +105,8 @@ void YarnPass::linearize(const View& yarns, double (&violated)[lanes]) {
   alignas(64) double here[3][lanes], next[3][lanes];
   const auto gather = [&](int vertex, double(&to)[3][lanes]) {
     const int* from = yarns.place + vertex * lanes;
-    for (int axis = 0; axis < 3; ++axis) {
+    for (int axis = 0; axis < 3; ++axis)
       for (int i = 0; i < used; ++i) to[axis][i] = yarns.x[axis][from[i]];
-    }
   };
   gather(0, here);
   for (int k = 0; k < yarns.links; ++k) {
@@ -221,9 +218,8 @@ void YarnPass::substitute(const View& yarns) const {
       off_after[i] = row.off[i];
     }
     const int* to = yarns.place + k * lanes;
-    for (int axis = 0; axis < 3; ++axis) {
+    for (int axis = 0; axis < 3; ++axis)
       for (int i = 0; i < used; ++i) yarns.x[axis][to[i]] += move[axis][i];
-    }
   }
 }
 

@@ -134,13 +134,12 @@ void add_accelerations(const Problem& problem, const Positions& x, const Positio
   }
   const Bending& bending = problem.bending();
   std::size_t begin = 0;
-  for (const std::size_t run : problem.bending_runs()) {
+  for (const std::size_t run : problem.bending_runs())
     for (const std::size_t end = begin + run; begin < end;) {
       const std::size_t count = std::min(most_at_once, end - begin);
       add_bending(bending[begin], count, w, x.data(), scale, y.data());
       begin += count;
     }
-  }
   work.spring_evaluations += static_cast<std::int64_t>(bending.size());
 }
 

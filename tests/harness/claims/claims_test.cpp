@@ -15,7 +15,7 @@ TEST(Claims, C7FitsTheOrdersOfResidualsThatTookTwoIterations) {
   const auto with = [](double order, double change_order, bool second, double corrupt) {
     std::vector<json> points;
     int k = 0;
-    for (const double step : {0.01, 0.005, 0.0025, 0.00125, 0.000625}) {
+    for (const double step : {0.01, 0.005, 0.0025, 0.00125, 0.000625})
       for (const double limit : {0.1, 0.001}) {
         json p = point("chain", "step", "fast_projection", limit, 80, step, 1);
         const double first = limit > 0.01 ? 1e-3 : std::pow(step, order);
@@ -26,7 +26,6 @@ TEST(Claims, C7FitsTheOrdersOfResidualsThatTookTwoIterations) {
         p["error"]["residuals"] = series;
         points.push_back(p);
       }
-    }
     return verdict("C7", points);
   };
   const struct {

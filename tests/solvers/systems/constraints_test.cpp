@@ -113,8 +113,8 @@ TEST(SchurComplement, EqualsTheDenseProductInEachTriangleWithAndWithoutContacts)
     edges.gradient(y, uy);
     std::vector<double> other_w = problem.inverse_mass();
     for (double& one : other_w) one *= testing::uniform(random, 0.5, 2);
-    for (const auto triangle : {Triangle::lower, Triangle::upper, Triangle::both}) {
-      for (const bool weighed : {false, true}) {
+    for (const auto triangle : {Triangle::lower, Triangle::upper, Triangle::both})
+      for (const bool weighed : {false, true})
         for (const bool touching : {false, true}) {
           SCOPED_TRACE(touching ? "contacts" : "no contacts");
           SchurComplement schur(edges, problem.vertices(), triangle);
@@ -140,14 +140,11 @@ TEST(SchurComplement, EqualsTheDenseProductInEachTriangleWithAndWithoutContacts)
           MatrixXd found = Eigen::Map<const Eigen::SparseMatrix<double>>(
               pattern.n, pattern.n, pattern.entries(), pattern.column_start.data(),
               pattern.row_index.data(), values.data());
-          if (!both) {
+          if (!both)
             found = triangle == Triangle::lower ? MatrixXd(found.selfadjointView<Eigen::Lower>())
                                                 : MatrixXd(found.selfadjointView<Eigen::Upper>());
-          }
           EXPECT_LT((found - jx * mobility * (both ? jy : jx).transpose()).norm(), 1e-11);
         }
-      }
-    }
   });
 }
 
