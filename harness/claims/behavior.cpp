@@ -1,9 +1,7 @@
 // C4, C7 to C10, C12 to C14 and C16: what works at all, residuals, shapes and strains.
-
 #include "harness/claims/claims.h"
 
 namespace harness::claims {
-
 namespace {
 
 // Over sampled steps with a second iteration; in others the first residual is the last one, too.

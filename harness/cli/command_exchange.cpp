@@ -1,5 +1,4 @@
 // bench export and bench judge: scenes for other programs, and what these made of them.
-
 #include "harness/analysis/measured_point.h"
 #include "harness/cli/command.h"
 #include "harness/judge/trajectory.h"

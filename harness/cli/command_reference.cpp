@@ -1,5 +1,4 @@
 // bench reference: the trajectories that errors are measured against.
-
 #include "harness/cli/command.h"
 #include "harness/judge/reference_routes.h"
 #include "harness/points/context.h"

@@ -1,5 +1,4 @@
 // bench show, claims, results, report and plot: result files printed and drawn.
-
 #include "harness/answers/answer.h"
 #include "harness/claims/claims.h"
 #include "harness/cli/command.h"

@@ -9,7 +9,6 @@
 #include "harness/points/plugins.h"
 
 namespace harness {
-
 namespace {
 
 // A number within bounds, with the message that files get too.

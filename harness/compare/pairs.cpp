@@ -1,4 +1,3 @@
-
 #include "harness/base/statistics.h"
 #include "harness/compare/comparison.h"
 

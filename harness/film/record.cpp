@@ -1,4 +1,3 @@
-
 #include <iomanip>
 
 #include "harness/base/files.h"

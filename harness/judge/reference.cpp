@@ -5,7 +5,6 @@
 #include "harness/base/files.h"
 
 namespace harness {
-
 namespace {
 
 constexpr const char* reference_schema = "inextensible-reference/2";

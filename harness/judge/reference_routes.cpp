@@ -8,7 +8,6 @@
 #include "harness/scenes/pendulum.h"
 
 namespace harness {
-
 namespace {
 
 constexpr double perturbation = 1e-10;  // of a start, over the scene's size

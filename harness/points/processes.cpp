@@ -1,5 +1,3 @@
-#include "harness/points/processes.h"
-
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -11,6 +9,7 @@
 #include "harness/base/files.h"
 #include "harness/base/json.h"
 #include "harness/base/text.h"
+#include "harness/points/plugins.h"
 #include "harness/scenes/scene_folder.h"
 #include "solvers/c_method.h"
 

@@ -1,4 +1,3 @@
-
 #include "harness/run/sweep.h"
 
 namespace harness {

@@ -9,7 +9,6 @@
 #include "harness/run/calibration.h"
 
 namespace harness {
-
 namespace {
 
 // A run that hardly moves keeps its strain and energy, as in single precision at tiny steps. Phase

@@ -1,4 +1,4 @@
-#include "harness/stability/cases.h"
+#include "harness/stability/hard_case.h"
 
 namespace harness::cases {
 

@@ -2,7 +2,6 @@
 
 #include "harness/base/child_process.h"
 #include "harness/scenes/pendulum.h"
-#include "harness/stability/cases.h"
 #include "harness/stability/stability.h"
 
 namespace harness {

@@ -1,5 +1,4 @@
 // How hard cases should end, and where methods are known to end otherwise: configs/hard_cases.json.
-
 #include "harness/base/files.h"
 #include "harness/points/schema.h"
 #include "harness/stability/hard_case.h"

@@ -1,6 +1,4 @@
 // The scenes of the hard cases; configs/hard_cases.json says how they are expected to end.
-
-#include "harness/stability/cases.h"
 #include "harness/stability/hard_case.h"
 
 namespace harness {

@@ -3,7 +3,6 @@
 #include <Eigen/SPQRSupport>
 
 #include "harness/points/schema.h"
-#include "harness/stability/cases.h"
 
 namespace harness {
 

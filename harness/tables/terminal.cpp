@@ -1,4 +1,3 @@
-
 #include "harness/tables/tables.h"
 
 namespace harness {
@@ -123,23 +122,13 @@ void print_failures(std::ostream& out, const Runs& runs, bool all) {
   for (const auto& [name, count] : of_contestants) out << "  " << name << " x " << count << '\n';
 }
 
-// Plug-in solvers, their versions, and the share of time that copying states takes.
-void print_plugins(std::ostream& out, const Runs& runs, const json& plugins) {
+// Plug-in solvers and their versions.
+void print_plugins(std::ostream& out, const json& plugins) {
   if (!plugins.empty()) out << '\n';
   for (const auto& plugin : plugins)
-    for (const auto& solver : plugin.at("solvers")) {
-      double copy = 0, all = 0;  // s
-      for (const Point& point : runs.points) {
-        if (point.spec().solver != solver || !point.ok()) continue;
-        const auto& phases = point.result().phases;
-        copy += phases.copy;
-        all += phases.unconstrained + phases.filter + phases.collision + phases.copy;
-      }
+    for (const auto& solver : plugin.at("solvers"))
       out << "plug-in " << solver.get<std::string>() << ": "
-          << plugin.at("version").get<std::string>();
-      if (copy > 0) out << "; copying its state takes " << percent(copy / all) << " of its time";
-      out << '\n';
-    }
+          << plugin.at("version").get<std::string>() << '\n';
 }
 
 void print_noise(std::ostream& out, const json& document) {
@@ -202,7 +191,7 @@ void print_sweep(std::ostream& out, const json& document, const std::string& fil
     for (const std::string& sentence : finding.sentences) out << sentence << '\n';
   }
   print_failures(out, runs, all);
-  print_plugins(out, runs, document.at("context").value("plugins", json::array()));
+  print_plugins(out, document.at("context").value("plugins", json::array()));
   print_noise(out, document);
   if (const std::string words = text(coverage_of(runs)); !words.empty())
     out << '\n' << words << '\n';

@@ -15,9 +15,6 @@
 // With contact inside, a vertex that touches is one more term, z_v = x_v within its half-space, and
 // the others pull towards where they are, so that the matrix stays. Loops: three solves, one pass
 // over edges, an iteration.
-#include <algorithm>
-#include <cmath>
-
 #include "solvers/methods/rows.h"
 #include "solvers/systems/constraint_system.h"
 #include "solvers/systems/vertex_matrix.h"

@@ -16,9 +16,6 @@
 // A factorization in single precision solves (7) to a residual of a fraction of |C(x_j)|, the
 // forcing term of an inexact Newton method: first_forcing, then as |C| has fallen, squared
 // (Eisenstat and Walker 1996, choice 2), which keeps the convergence of order two.
-#include <algorithm>
-#include <limits>
-
 #include "solvers/methods/rows.h"
 #include "solvers/methods/strain_passes.h"
 

@@ -12,9 +12,6 @@
 // forces; if that fails, once more from zero, whose first iteration is fast projection's. The
 // linear system is solved to a few percent by projected conjugate gradients, or factored. Loops:
 // one assembly, one factorization, several solves and one or more evaluations an iteration.
-#include <algorithm>
-#include <cmath>
-
 #include "solvers/methods/rows.h"
 #include "solvers/systems/constraint_system.h"
 #include "solvers/systems/kkt_system.h"

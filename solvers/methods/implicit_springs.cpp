@@ -10,10 +10,6 @@
 // order. (2) Tensions in the matrix are predicted. (3) Near the end a factorization is kept for
 // further iterations while these shrink. Loops: one assembly, factorization and solve, and one or
 // more energy evaluations, an iteration.
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include "solvers/methods/rows.h"
 #include "solvers/methods/spring_energy.h"
 

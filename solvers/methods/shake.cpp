@@ -11,9 +11,6 @@
 // The equations have spurious solutions far away; the closest point of the manifold is at most
 // twice as far from x^n (on it) as x0 is, so what is farther, allowing for slack, is refused.
 // Loops: one assembly and factorization a step, one solve and two passes over edges an iteration.
-#include <cmath>
-#include <limits>
-
 #include "solvers/methods/rows.h"
 #include "solvers/problem/forces.h"
 #include "solvers/systems/constraint_system.h"

@@ -11,7 +11,6 @@
 // Departures: n_k is that of the end in the second stage; the frequency is bounded by the step, not
 // by 60 Hz. At rest the first stage leaves C_k = load / (m_k omega^2). Loops: two passes over
 // edges, in the mesh's order.
-#include <cmath>
 #include <numbers>
 
 #include "solvers/methods/rows.h"

@@ -1,4 +1,3 @@
-
 #include "solvers/methods/backend.h"
 #include "solvers/problem/forces.h"
 #include "solvers/stepping/bdf2.h"

@@ -7,9 +7,6 @@
 // paper's Hessian is indefinite under compression. No line search, as in the paper. Momentum is
 // conserved only as far as the iteration has converged. A vertex in contact takes the minimum
 // within its plane. Loops: one over vertices a pass.
-#include <algorithm>
-#include <limits>
-
 #include "solvers/methods/rows.h"
 #include "solvers/methods/vertex_passes.h"
 #include "solvers/problem/forces.h"

@@ -1,6 +1,4 @@
 // A yarn goes on through the edge opposite at a vertex: the two share no quad and no triangle.
-#include <algorithm>
-#include <array>
 #include <map>
 #include <tuple>
 

@@ -14,8 +14,6 @@
 // where S is the inverse of A across g. P is regular where that exists, whatever A is along the
 // edge, so nothing needs to be permuted; and K has the right inertia, M + H positive definite on
 // the null space of J, if and only if A across g is positive definite in every block.
-#include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 #include "solvers/systems/kkt_system.h"

@@ -1,7 +1,6 @@
 // The pendulum in angles against dense equations of motion and known places; what is stored. The
 // error is tested by mutation: a run of the wrong physics is off by more than the headline's level,
 // and one of the right physics is not.
-
 #include <Eigen/Dense>
 #include <fstream>
 

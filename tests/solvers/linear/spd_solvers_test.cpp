@@ -1,6 +1,5 @@
 // What every linear solver of the list promises, on every matrix that it takes, against dense
 // algebra; and what some of them promise beyond that.
-
 #include <Eigen/Dense>
 #include <unsupported/Eigen/KroneckerProduct>
 

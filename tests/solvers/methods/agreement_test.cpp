@@ -1,6 +1,5 @@
 // Methods that solve the same equations by different iterations take the same steps as far as they
 // have converged. What ADMM and augmented VBD keep and remember.
-
 #include "harness/judge/mechanics.h"
 #include "solvers/problem/edge_constraints.h"
 #include "support/motion.h"

@@ -1,7 +1,6 @@
 // What every method in every time stepper must hold, besides what `bench check` asks of it
 // (conformance_test.cpp): coordinates and units, obstacles that move, refusals that leave nothing
 // behind, honest random steps, no allocation.
-
 #include <Eigen/Geometry>
 #include <atomic>
 #include <cstdlib>

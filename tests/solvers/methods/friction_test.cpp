@@ -1,6 +1,5 @@
 // Friction of every kind of method against what statics and dynamics say of it: a rope on a slope,
 // a vertex on a turntable, and a rope round a post.
-
 #include <Eigen/Geometry>
 #include <numbers>
 

@@ -1,6 +1,5 @@
 // Fast projection and ICD: the theorems of the paper. Yarns are found whatever the mesh; a yarn's
 // projection is fast projection's on a chain. Where methods fail is asked by the hard cases.
-
 #include <Eigen/Dense>
 
 #include "solvers/methods/yarn_pass.h"

@@ -1,6 +1,5 @@
 // Implicit springs and vertex block descent: what makes them cheap may not change what they
 // converge to. PBD with substeps and soft step.
-
 #include <Eigen/Dense>
 #include <numbers>
 

@@ -1,6 +1,5 @@
 // Orders of convergence on a smooth stretch of the chain's motion, against the pendulum in angles;
 // energy behaviour; BDF2's own identities.
-
 #include "harness/base/statistics.h"
 #include "harness/judge/mechanics.h"
 #include "harness/judge/reference.h"

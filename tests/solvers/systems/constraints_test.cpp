@@ -1,7 +1,6 @@
 // C, its gradient, J W J^T with and without contacts, SHAKE's matrix and constrained accelerations,
 // by slow second routes and mechanics. (Starting half a step back is what lets every method fall
 // exactly: every_method_test.cpp.)
-
 #include <Eigen/Dense>
 #include <Eigen/SparseCore>
 

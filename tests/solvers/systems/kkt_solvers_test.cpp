@@ -1,5 +1,4 @@
 // ICD's saddle-point system in every solver, against its dense form.
-
 #include <Eigen/Dense>
 #include <tuple>
 
