@@ -8,8 +8,7 @@
 
 namespace harness {
 
-using Eigen::Vector3d;
-using inextensible::TriangleMesh;
+using Eigen::Vector3d, inextensible::TriangleMesh;
 
 namespace {
 

@@ -16,10 +16,7 @@
 namespace harness {
 namespace {
 
-using inextensible::Positions;
-using inextensible::State;
-using inextensible::Status;
-using inextensible::StepResult;
+using inextensible::Positions, inextensible::State, inextensible::Status, inextensible::StepResult;
 
 // A program whose standard input and output are ours. Its errors go where ours go, and it ends with
 // this process at the latest.

@@ -110,8 +110,7 @@ class Solver {
 
 PYBIND11_MODULE(inextensible, module) {
   using namespace inextensible::python;
-  using inextensible::State;
-  using py::arg;
+  using inextensible::State, py::arg;
   py::register_exception<harness::UsageError>(module, "UsageError", PyExc_ValueError);
   py::class_<Scene>(module, "Scene")
       .def(py::init<const std::string&, const py::kwargs&>(), arg("name"))

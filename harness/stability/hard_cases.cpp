@@ -5,8 +5,7 @@ namespace harness {
 namespace {
 
 using namespace cases;
-using inextensible::Positions;
-using inextensible::State;
+using inextensible::Positions, inextensible::State;
 using Direction = inextensible::Direction;
 
 // An energy_tolerance: the closest point of the manifold is at most twice as far from the start as

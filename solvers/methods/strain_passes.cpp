@@ -286,8 +286,7 @@ std::int64_t StrainPasses::pass(const ColoredEdges::Block& block, Displacements&
 
 template <bool middle, class Ends>
 [[gnu::always_inline]] inline void StrainPasses::measure(int k, const Ends& ends) {
-  using simd::where;
-  using std::experimental::static_simd_cast;
+  using simd::where, std::experimental::static_simd_cast;
   Group& group = groups_[k / width];
   const auto edge = [&](const Places& x, int axis) {
     const double* from = x.data() + axis * x.rows();

@@ -6,8 +6,7 @@
 namespace harness::analysis {
 namespace {
 
-using invented::document;
-using invented::run;
+using invented::document, invented::run;
 
 std::string winner(const Cell& cell) {
   return cell.first() ? cell.first()->point.id() : "none: " + cell.empty_because;

@@ -1,5 +1,4 @@
-// Where output goes, and what stays unchanged: links, devices, pipes, the user's own files. Input:
-// no text makes a document unreadable, and no expression runs for ever.
+// Where output goes, and what stays unchanged; no text that is read makes the program fail or hang.
 #include "harness/base/files.h"
 
 #include <sys/stat.h>

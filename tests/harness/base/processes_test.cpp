@@ -1,5 +1,4 @@
-// Children that misbehave end, and their parents do not. One process at a time takes times; the
-// lock ends with its process, and programs started under it go on.
+// Children that misbehave end, and their parents do not. One process at a time takes times.
 #include <sys/prctl.h>
 #include <sys/wait.h>
 

@@ -1,5 +1,4 @@
-// Verdicts on the paper's claims follow from points by the stated rules: invented points in, known
-// verdicts out, of contests of speed only where intervals lie on one side.
+// Verdicts on the paper's claims follow from points by the stated rules.
 #include "support/invented_runs.h"
 
 namespace harness {

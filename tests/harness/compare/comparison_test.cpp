@@ -1,5 +1,4 @@
-// The rank test against scipy's numbers; changes, gates and reports; interleaved pairs with a fake
-// clock, without processes.
+// The rank test against scipy's numbers; changes and gates; pairs with a fake clock.
 #include "harness/compare/comparison.h"
 
 #include <cmath>

@@ -1,5 +1,4 @@
-// Corrupted suites and result files, by the thousand, repeatably; and no field of a point is lost
-// on its way through JSON.
+// Corrupted suites and result files, by the thousand, and points on their way through JSON.
 #include <gtest/gtest.h>
 
 #include <random>

@@ -1,5 +1,4 @@
-// Runs in child processes: whatever a child does to itself becomes its run's status. Journals and
-// pieces: however a sweep is divided, its parts make up the whole.
+// Runs in child processes, whatever a child does to itself; journals and pieces of sweeps.
 #include "harness/run/execute.h"
 
 #include <gtest/gtest.h>

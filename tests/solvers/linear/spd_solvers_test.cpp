@@ -1,5 +1,4 @@
-// What every linear solver of the list promises, on every matrix that it takes, against dense
-// algebra; and what some of them promise beyond that.
+// What every linear solver of the list promises, and some beyond that, against dense algebra.
 #include <Eigen/Dense>
 #include <unsupported/Eigen/KroneckerProduct>
 
@@ -9,11 +8,7 @@
 namespace inextensible {
 namespace {
 
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-using testing::Random;
-using testing::random_matrix;
-using testing::uniform;
+using Eigen::MatrixXd, Eigen::VectorXd, testing::Random, testing::random_matrix, testing::uniform;
 using Triangle = SymmetricPattern::Triangle;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();

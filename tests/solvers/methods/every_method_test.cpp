@@ -27,14 +27,8 @@ extern "C" void* malloc(std::size_t size) {
 namespace inextensible {
 namespace {
 
-using Eigen::Vector3d;
-using testing::for_seeds;
-using testing::h;
-using testing::moving_state;
-using testing::Random;
-using testing::random_mesh;
-using testing::single_rounding;
-using testing::uniform;
+using Eigen::Vector3d, testing::for_seeds, testing::h, testing::moving_state, testing::Random,
+    testing::random_mesh, testing::single_rounding, testing::uniform;
 constexpr std::uint64_t seeds = 8;
 
 class EveryMethod : public ::testing::TestWithParam<const char*> {

@@ -9,11 +9,7 @@
 namespace inextensible {
 namespace {
 
-using testing::for_seeds;
-using testing::h;
-using testing::Random;
-using testing::random_mesh;
-using testing::RandomMesh;
+using testing::for_seeds, testing::h, testing::Random, testing::random_mesh, testing::RandomMesh;
 constexpr int meshes = 8;
 
 struct Filtered {

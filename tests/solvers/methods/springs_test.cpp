@@ -1,5 +1,4 @@
-// Implicit springs and vertex block descent: what makes them cheap may not change what they
-// converge to. PBD with substeps and soft step.
+// Springs, PBD with substeps and soft step: what makes them cheap, and what they converge to.
 #include <Eigen/Dense>
 #include <numbers>
 
@@ -10,12 +9,8 @@
 namespace inextensible {
 namespace {
 
-using testing::for_seeds;
-using testing::h;
-using testing::moving_state;
-using testing::Random;
-using testing::random_mesh;
-using testing::RandomMesh;
+using testing::for_seeds, testing::h, testing::moving_state, testing::Random, testing::random_mesh,
+    testing::RandomMesh;
 
 std::unique_ptr<Stepper> springs(const RandomMesh& mesh, Settings settings) {
   settings["stiffness"] = 1e5;

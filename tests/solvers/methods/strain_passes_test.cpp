@@ -1,5 +1,4 @@
-// Passes over colored edges against loops over the problem's own edges, written out; and the strain
-// limiters that make such passes.
+// Passes over colored edges against loops over the problem's own edges; and the strain limiters.
 #include "solvers/methods/strain_passes.h"
 
 #include "solvers/registry.h"
@@ -8,12 +7,8 @@
 namespace inextensible {
 namespace {
 
-using Eigen::Vector3d;
-using testing::for_seeds;
-using testing::h;
-using testing::Random;
-using testing::RandomMesh;
-using testing::single_rounding;
+using Eigen::Vector3d, testing::for_seeds, testing::h, testing::Random, testing::RandomMesh,
+    testing::single_rounding;
 
 // What makes passes fast on cloth numbered row after row: few fillers, and nothing to gather.
 TEST(ColoredEdges, AreAdjacentOnClothAndChains) {

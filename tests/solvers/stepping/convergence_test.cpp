@@ -1,5 +1,4 @@
-// Orders of convergence on a smooth stretch of the chain's motion, against the pendulum in angles;
-// energy behaviour; BDF2's own identities.
+// Orders of convergence against the pendulum in angles, energy behaviour, and BDF2's identities.
 #include "harness/base/statistics.h"
 #include "harness/judge/mechanics.h"
 #include "harness/judge/reference.h"
@@ -12,11 +11,8 @@
 namespace harness {
 namespace {
 
-using inextensible::make_stepper;
-using inextensible::Positions;
-using inextensible::Settings;
-using inextensible::State;
-using inextensible::Stepper;
+using inextensible::make_stepper, inextensible::Positions, inextensible::Settings,
+    inextensible::State, inextensible::Stepper;
 
 constexpr double stretch = 0.32;  // s, of smooth motion
 constexpr double tight = 1e-11;   // strain limit: slack must not matter

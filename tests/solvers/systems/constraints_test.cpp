@@ -12,10 +12,7 @@
 namespace inextensible {
 namespace {
 
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-using testing::Random;
-using testing::random_mesh;
+using Eigen::MatrixXd, Eigen::VectorXd, testing::Random, testing::random_mesh;
 using Triangle = SymmetricPattern::Triangle;
 constexpr std::uint64_t seeds = 20;
 
