@@ -209,10 +209,9 @@ std::vector<ClaimVerdict> judge_claims(const std::vector<json>& results) try {
 
 void print_claims(std::ostream& out, const std::vector<ClaimVerdict>& claims) {
   out << "The paper compares times by strain alone, and so do verdicts; beside them is what holds "
-         "at "
-         "an error of at most 2 %. A 95 %\ninterval that holds a bound leaves a claim undecided. "
-         "Of "
-         "two parts (a) and (b), both: reproduced, one: changed, none: not\nreproduced.\n\n";
+         "at an error of at most 2 %. A 95 %\ninterval that holds a bound leaves a claim "
+         "undecided. Of two parts (a) and (b), both: reproduced, one: changed, none: "
+         "not\nreproduced.\n\n";
   for (const auto& c : claims) {
     out << c.id << " (" << c.where << "): " << c.statement << "\n  " << c.verdict;
     if (!c.measured.empty()) out << ": " << c.measured;

@@ -49,10 +49,10 @@ struct Compare : CompareOptions {
     const Gate passes = given_gate();
     const ComparedResult before = read_compared({base}), after = read_compared(next);
     try {
-      return report(compare(before, after, passes),
-                    "times of best points differ, but too few runs or too noisy a machine leave "
-                    "open whether that is noise: take more --reps, or use bench ab, which times in "
-                    "pairs");
+      return report(
+          compare(before, after, passes),
+          "times of best points differ, but too few runs or too noisy a machine leave open whether "
+          "that is noise: take more --reps, or use bench ab, which times in pairs");
     } catch (const NotComparable& reason) {
       std::string hint = "; a new baseline: bench baseline";
       for (const std::string& file : next) hint += " " + file;

@@ -58,8 +58,8 @@ struct Film : SceneOptions {
     command.option("--width", width, "of each picture; default: 480", "PIXELS",
                    {.least = 16, .most = 4096, .whole = true});
     command.option("--out", out,
-                   ".webp: a film; .png: stills; .obj: for other programs; "
-                   "default: results/local/film-<scene>.webp, .png with --stills",
+                   ".webp: a film; .png: stills; .obj: for other programs; default: "
+                   "results/local/film-<scene>.webp, .png with --stills",
                    "FILE");
   }
 

@@ -97,8 +97,7 @@ std::string version_text() {
          build.at("type").get<std::string>() + " by " + build.at("compiler").get<std::string>() +
          " with " + build.at("flags").get<std::string>() +
          "\nThe source is MIT licensed. This program links GSL and parts of SuiteSparse, and is as "
-         "a "
-         "whole\nunder the GNU GPL, version 3 or later (NOTICE). There is no warranty.";
+         "a whole\nunder the GNU GPL, version 3 or later (NOTICE). There is no warranty.";
 }
 
 void load(const Words& plugins) {

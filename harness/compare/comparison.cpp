@@ -238,9 +238,8 @@ Comparison compare(const ComparedResult& base, const ComparedResult& next, const
     const bool both = before && after;
     matched += both;
     if (both && before->spec != after->spec)
-      throw NotComparable(point.id +
-                          " is not the same run in both: scene parameters, settings or seed "
-                          "differ");
+      throw NotComparable(
+          point.id + " is not the same run in both: scene parameters, settings or seed differ");
     if (both ? tried_before.gave_up(*before) || tried.gave_up(*after)
              : (before ? tried : tried_before).covers(point)) {
       ++untried;

@@ -154,8 +154,8 @@ ProcessSolver process_solver(const std::string& command) {
   const json about = Process(command).hear();
   if (about.value("inextensible", 0) != 1)
     throw std::runtime_error(
-        "its first line must be a JSON object with \"inextensible\": 1, the "
-        "version of the protocol (docs/plugins.md)");
+        "its first line must be a JSON object with \"inextensible\": 1, the version of the "
+        "protocol (docs/plugins.md)");
   const auto text = [&](const char* key) { return kept(about.value(key, "")); };
   inextensible::Backend row{.name = text("name"), .summary = text("summary")};
   row.label = text("label");

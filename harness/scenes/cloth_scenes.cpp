@@ -256,8 +256,7 @@ std::vector<SceneType> cloth_scenes() {
        .parameters = drape_parameters(
            stiff_cotton(71),
            {{"off_axis", 0.08,
-             "how far its middle is from the sphere's axis along x, and half as far "
-             "along -z, m",
+             "how far its middle is from the sphere's axis along x, and half as far along -z, m",
              -10, 10}},
            3),
        .build = build_drape,
@@ -269,8 +268,8 @@ std::vector<SceneType> cloth_scenes() {
        .counts = count_square,
        .like = "patch"},
       {.name = "sliding_block",
-       .summary = "a square of cloth that slides on a table until friction stops it: its motion is "
-                  "known",
+       .summary =
+           "a square of cloth that slides on a table until friction stops it: its motion is known",
        .parameters = joined({cloth_parameters(5),
                              {{"speed", 1, "at the start, m/s", 0, 1e4},
                               {"friction", 0.3, "Coulomb coefficient", 0, 1e3},
@@ -306,8 +305,7 @@ std::vector<SceneType> cloth_scenes() {
        .counts = count_square},
       {.name = "cusick",
        .summary =
-           "a disc of cotton broadcloth hangs over the edge of a round table (Cusick's drape "
-           "test)",
+           "a disc of cotton broadcloth hangs over the edge of a round table (Cusick's drape test)",
        .parameters = with_cloth_parameters(
            {{"n", 31, "vertices along the disc's diameter", 7, 1000, true},
             {"radius", 0.15, "of the disc, m", 0, 1e6},

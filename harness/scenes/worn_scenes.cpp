@@ -232,9 +232,8 @@ std::vector<SceneType> worn_scenes() {
        .counts = [](const SceneParameters& p) { return count_cloth(skirt(p)); },
        .like = "drape"},
       {.name = "cape",
-       .summary =
-           "a cape, pinned to a body along a short part of its collar; the body walks and turns "
-           "(after Figure 8)",
+       .summary = "a cape, pinned to a body along a short part of its collar; the body walks and "
+                  "turns (after Figure 8)",
        .parameters = with_cloth_parameters(
            {{"n", 41, "vertices across", 3, 4000, true},
             {"length", 0.7, "of the cape, m", 0, 1e3},

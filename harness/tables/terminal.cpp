@@ -182,8 +182,7 @@ void print_sweep(std::ostream& out, const json& document, const std::string& fil
   const auto planes = planes_of(runs);
   print_grid(out, planes);
   out << "(~: too close to the next, or too few samples, to tell; u: with settings other than its "
-         "tuned ones; errors "
-         "are over the scene's size)\n";
+         "tuned ones; errors are over the scene's size)\n";
   for (const Plane& plane : planes)
     if (all) print_everybody(out, plane);
   for (const Finding& finding : findings_of(planes)) {

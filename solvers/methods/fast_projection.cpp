@@ -230,8 +230,8 @@ Backend fast_projection_row() {
                        {"smoothing_relaxation", 1.4, "times a pass's correction", relaxation_range,
                         tunable_relaxation, departs},
                        {"first_forcing", 1e-2,
-                        "residual of a step's first linear solve in mixed precision, of the "
-                        " right-hand side; those of later ones are smaller",
+                        "residual of a step's first linear solve in mixed precision, of the  "
+                        "right-hand side; those of later ones are smaller",
                         Range{1e-8, 1}, tunable_forcing},
                        schur_solver()},
           .make_filter = make_filter<FastProjection>,

@@ -230,18 +230,18 @@ Backend implicit_springs_row() {
       .name = "implicit_springs",
       .summary = "stiff springs, by Newton with line search",
       .strain_control = StrainControl::stiffness,
-      .settings =
-          {{"stiffness", 1e4, "spring stiffness EA in N; sweeps search it", positive},
-           iteration_limit(300, "Newton iterations a step before it is refused"),
-           {"newton_tolerance", 0.1, "last Newton step, in strain limit times shortest rest length",
-            positive, SearchRange{0.01, 10}},
-           // Instructions at 1 % strain and 1/100 s, plain Newton = 1, on the chain of 80 and the
-           // drape of 21 x 21: 0.66 and 0.77 without reuse, 0.59 and 0.55 with 10. A reuse of 30
-           // takes 0.55 and 0.53 but ends steps less exactly on the chain.
-           {"reuse", 10.0,
-            "a Newton step below this many tolerances keeps its factorization for the next; 0: "
-            "never",
-            Range{}, SearchRange{0, 100}}},
+      .settings = {{"stiffness", 1e4, "spring stiffness EA in N; sweeps search it", positive},
+                   iteration_limit(300, "Newton iterations a step before it is refused"),
+                   {"newton_tolerance", 0.1,
+                    "last Newton step, in strain limit times shortest rest length", positive,
+                    SearchRange{0.01, 10}},
+                   // Instructions at 1 % strain and 1/100 s, plain Newton = 1, on the chain of 80
+                   // and the drape of 21 x 21: 0.66 and 0.77 without reuse, 0.59 and 0.55 with 10.
+                   // A reuse of 30 takes 0.55 and 0.53 but ends steps less exactly on the chain.
+                   {"reuse", 10.0,
+                    "a Newton step below this many tolerances keeps its factorization for the "
+                    "next; 0: never",
+                    Range{}, SearchRange{0, 100}}},
       .make = make_step<ImplicitSprings>,
       .direction = Direction::springs,
       .citation = "Baraff and Witkin 1998",

@@ -138,8 +138,8 @@ void ClosedSurface::check_orientation() {
   convex_ = convex_ && covered < 6 * std::numbers::pi;
   if (!(volume > 0))
     throw std::invalid_argument(
-        "collider: the mesh is inside out; its triangles must be "
-        "counter-clockwise seen from outside");
+        "collider: the mesh is inside out; its triangles must be counter-clockwise seen from "
+        "outside");
 }
 
 void ClosedSurface::lay_out_grid() {
