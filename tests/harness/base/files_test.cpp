@@ -14,8 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Files : public testing::Test {
- protected:
+struct Files : testing::Test {
   std::string at(const std::string& name) const { return folder_.file(name); }
   static std::string content(const std::string& path) { return read_file(path, "test"); }
 

@@ -79,8 +79,7 @@ TEST(ChildProcess, TimeInWhichTheParentWasStoppedIsNotTheChilds) {
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << "it counted as timed out";
 }
 
-class Lock : public testing::Test {
- protected:
+struct Lock : testing::Test {
   void SetUp() override { setenv("TMPDIR", ::testing::TempDir().c_str(), 1); }
 };
 

@@ -135,8 +135,7 @@ TEST(Documents, CorruptedResultsAreReadOrRefusedInALine) {
 
 // ---- Points, filled at random by the tables of fields: a new field is tested with its row ----
 
-class Random {
- public:
+struct Random {
   explicit Random(std::uint64_t seed) : generator_(seed) {}
 
   void fill(double& value, bool nullable) {

@@ -201,8 +201,7 @@ json header_of(const Suite& suite) {
   return {{"pid", 1}, {"identity", to_json(suite)}, {"context", {{"date", "today"}}}};
 }
 
-class JournalTest : public ::testing::Test {
- protected:
+struct JournalTest : ::testing::Test {
   std::string out() const { return folder_.file("out.json"); }
   std::string journal() const { return out() + ".journal"; }
 

@@ -31,8 +31,7 @@ using Eigen::Vector3d, testing::for_seeds, testing::h, testing::moving_state, te
     testing::random_mesh, testing::single_rounding, testing::uniform;
 constexpr std::uint64_t seeds = 8;
 
-class EveryMethod : public ::testing::TestWithParam<const char*> {
- protected:
+struct EveryMethod : ::testing::TestWithParam<const char*> {
   const Backend& row = *find_backend(GetParam());
   const bool limits_strain = row.strain_control == StrainControl::strain_limit;
 

@@ -68,8 +68,7 @@ TEST(Order, IsThatOfTheMethodInItsOwnStepper) {
 }
 
 // Every method that keeps a strain limit, here next to nothing, in a stepper of second order.
-class PairOrder : public ::testing::TestWithParam<const char*> {
- protected:
+struct PairOrder : ::testing::TestWithParam<const char*> {
   double of(double radius) const {
     const Settings wanted{{"target", 0.0}, {"spectral_radius", radius}};
     return order(GetParam(), inextensible::names::those_of(GetParam(), wanted)).value;
