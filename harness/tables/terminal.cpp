@@ -122,15 +122,6 @@ void print_failures(std::ostream& out, const Runs& runs, bool all) {
   for (const auto& [name, count] : of_contestants) out << "  " << name << " x " << count << '\n';
 }
 
-// Plug-in solvers and their versions.
-void print_plugins(std::ostream& out, const json& plugins) {
-  if (!plugins.empty()) out << '\n';
-  for (const auto& plugin : plugins)
-    for (const auto& solver : plugin.at("solvers"))
-      out << "plug-in " << solver.get<std::string>() << ": "
-          << plugin.at("version").get<std::string>() << '\n';
-}
-
 void print_noise(std::ostream& out, const json& document) {
   const json& context = document.at("context");
   if (const auto pair = noise_of(context))
@@ -190,7 +181,9 @@ void print_sweep(std::ostream& out, const json& document, const std::string& fil
     for (const std::string& sentence : finding.sentences) out << sentence << '\n';
   }
   print_failures(out, runs, all);
-  print_plugins(out, document.at("context").value("plugins", json::array()));
+  for (const json& plugin : document.at("context").value("plugins", json::array()))
+    for (const std::string solver : plugin.at("solvers"))
+      out << "\nplug-in " << solver << ": " << plugin.at("version").get<std::string>() << '\n';
   print_noise(out, document);
   if (const std::string words = text(coverage_of(runs)); !words.empty())
     out << '\n' << words << '\n';

@@ -174,10 +174,6 @@ TEST(StepSearch, SkipsATighterLimitOnlyAfterNothingButTimeouts) {
   }
 }
 
-bool has_level(const PointResult& point, double level) {
-  return std::ranges::count(point.best_at_errors, level) > 0;
-}
-
 TEST(ErrorLevels, EachHasItsFastestStepBesideTheOneOfAnyMotion) {
   FakeMachine machine{parabola(100)};
   machine.error = [](const PointSpec& spec) {
@@ -193,7 +189,7 @@ TEST(ErrorLevels, EachHasItsFastestStepBesideTheOneOfAnyMotion) {
     EXPECT_EQ(point.best, has_step(point.spec, 100)) << point.spec.id();
     for (const auto& [level, n] : wanted) {
       const double tenth = point.spec.strain_limit > 0.05 ? (level < 0.01 ? 200 : 100) : n;
-      EXPECT_EQ(has_level(point, level), has_step(point.spec, tenth))
+      EXPECT_EQ(std::ranges::count(point.best_at_errors, level) > 0, has_step(point.spec, tenth))
           << point.spec.id() << " at " << level;
     }
     // What is near to a best step is looked at again before the search ends.
