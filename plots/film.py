@@ -11,7 +11,7 @@ import json
 import statistics
 import sys
 from pathlib import Path
-from typing import Any, Iterator
+from typing import Any
 
 sys.dont_write_bytecode = True
 
@@ -135,18 +135,13 @@ def stills(film: Film) -> Image.Image:
     return sheet(film, cells if len(film.frames) > 1 else [[cell for row in cells for cell in row]])
 
 
-def moving(film: Film) -> Iterator[Image.Image]:
-    for frame in film.frames:
-        yield sheet(film, [[(take, frame) for take in range(len(film.takes))]])
-
-
 # ---- Files ------------------------------------------------------------------------------------------------------------
 
 def save(film: Film, out: Path) -> None:
     if out.suffix == ".png":
         stills(film).save(out, optimize=True)
     else:
-        images = moving(film)
+        images = (sheet(film, [[(take, frame) for take in range(len(film.takes))]]) for frame in film.frames)
         next(images).save(out, save_all=True, append_images=images, duration=round(1000 / film.rate), loop=0, quality=86, method=2)
 
 
