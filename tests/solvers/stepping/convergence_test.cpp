@@ -79,7 +79,9 @@ struct PairOrder : ::testing::TestWithParam<const char*> {
 // Euler's error is there.
 TEST_P(PairOrder, IsTheSteppers) {
   EXPECT_NEAR(of(1), 2, 0.25);
-  if (std::string_view(GetParam()).ends_with("@midpoint")) EXPECT_NEAR(of(0.5), 1, 0.1);
+  if (std::string_view(GetParam()).ends_with("@midpoint")) {
+    EXPECT_NEAR(of(0.5), 1, 0.1);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Pairs, PairOrder,

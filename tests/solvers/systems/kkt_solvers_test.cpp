@@ -109,8 +109,9 @@ TEST_P(KktSolvers, SolveTheDenseSaddlePointSystemAndNoticeTheWrongInertia) {
       const bool proper = (eigenvalues.array() < 0).count() == m;
       ++seen[proper];
       const bool certain = eigenvalues.cwiseAbs().minCoeff() > 1e-6;
-      if (certain && (row.tells_inertia || (proper && !row.solves_all)))
+      if (certain && (row.tells_inertia || (proper && !row.solves_all))) {
         EXPECT_EQ(kkt->convexified(), !proper);
+      }
       if (row.chains) {
         EXPECT_EQ(work.factorizations, kkt->convexified() ? 2 : 1);  // none was left to UMFPACK
       }
@@ -146,8 +147,9 @@ TEST(ChainKkt, TakesNoOtherGraphs) {
     parts.pinned = pinned;
     const Problem problem(parts);
     EXPECT_EQ(forms_chains(problem), fits) << last.a << " " << last.b;
-    if (!fits)
+    if (!fits) {
       EXPECT_THROW(make_chain_kkt(problem, EdgeConstraints(problem, 0.01)), std::invalid_argument);
+    }
   }
 }
 
