@@ -1,20 +1,17 @@
 #!/usr/bin/python3
 """Puts the pictures of `bench film` together: stills on a sheet, or a film with solvers side by side.
 
-    plots/film.py FOLDER OUT.webp|.mp4|.png
+    plots/film.py FOLDER OUT.webp|.png
 
-FOLDER holds film.json and the pictures of each take (harness/film/film.h). Pillow draws captions and writes .webp and .png;
-ffmpeg writes .mp4.
+FOLDER holds film.json and the pictures of each take (harness/film/film.h). Pillow draws captions and writes the files.
 """
 
 import argparse
 import json
-import shutil
 import statistics
-import subprocess
 import sys
 from pathlib import Path
-from typing import Any, Iterator
+from typing import Any
 
 sys.dont_write_bytecode = True
 
@@ -138,32 +135,13 @@ def stills(film: Film) -> Image.Image:
     return sheet(film, cells if len(film.frames) > 1 else [[cell for row in cells for cell in row]])
 
 
-def moving(film: Film) -> Iterator[Image.Image]:
-    for frame in film.frames:
-        yield sheet(film, [[(take, frame) for take in range(len(film.takes))]])
-
-
 # ---- Files ------------------------------------------------------------------------------------------------------------
-
-def save_mp4(film: Film, out: Path) -> None:
-    if not shutil.which("ffmpeg"):
-        raise OSError("ffmpeg missing (Debian: apt-get install ffmpeg); .webp needs none")
-    command = ["ffmpeg", "-nostdin", "-y", "-loglevel", "error", "-framerate", str(film.rate), "-i", "sheet-%d.ppm",
-               "-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "20", str(out.absolute())]
-    for number, image in enumerate(moving(film)):  # cropped to even width and height, which the format requires
-        image.crop((0, 0, image.width // 2 * 2, image.height // 2 * 2)).save(film.folder / f"sheet-{number}.ppm")
-    done = subprocess.run(command, cwd=film.folder, capture_output=True, text=True, errors="replace", check=False)
-    if done.returncode != 0:
-        raise OSError("ffmpeg failed: " + (done.stderr.strip().splitlines() or ["no message"])[-1][:200])
-
 
 def save(film: Film, out: Path) -> None:
     if out.suffix == ".png":
         stills(film).save(out, optimize=True)
-    elif out.suffix == ".mp4":
-        save_mp4(film, out)
     else:
-        images = moving(film)
+        images = (sheet(film, [[(take, frame) for take in range(len(film.takes))]]) for frame in film.frames)
         next(images).save(out, save_all=True, append_images=images, duration=round(1000 / film.rate), loop=0, quality=86, method=2)
 
 

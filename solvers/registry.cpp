@@ -135,10 +135,9 @@ const Backend& row_of(std::string_view name) {
 
 // With all settings.
 BackendOptions checked(const Backend& backend, const Problem& problem, BackendOptions options) {
-  if (!(options.strain_limit > 0) || !std::isfinite(options.strain_limit)) {
+  if (!(options.strain_limit > 0) || !std::isfinite(options.strain_limit))
     throw std::invalid_argument("strain limit is " + std::to_string(options.strain_limit) +
                                 ", must be positive");
-  }
   if (const char* part = part_not_taken(backend, problem))
     throw std::invalid_argument("solver " + quoted(backend.name) + " takes no " + part);
   options.settings = complete_settings(backend, options.settings);

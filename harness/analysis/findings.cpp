@@ -1,7 +1,6 @@
 // The answers of a result file in words and as JSON.
 #include "harness/analysis/plane.h"
 #include "harness/base/table.h"
-#include "harness/base/text.h"
 #include "harness/points/point_json.h"
 
 namespace harness::analysis {

@@ -2,7 +2,6 @@
 
 #include <iomanip>
 
-#include "harness/base/text.h"
 #include "harness/points/point_json.h"
 
 namespace harness::analysis {
@@ -79,8 +78,8 @@ Coverage coverage_of(const Runs& runs) {
     std::vector<std::vector<double>> times;
     for (const Point& p : best) times.push_back(values_without(p.result().times(), day));
     const double scatter = scatter_of(times);
-    for (const auto& [place, here] : grouped(best, place_of)) {
-      for (std::size_t i = 0; i < here.size(); ++i) {
+    for (const auto& [place, here] : grouped(best, place_of))
+      for (std::size_t i = 0; i < here.size(); ++i)
         for (std::size_t j = i + 1; j < here.size(); ++j) {
           const auto ratios = ratios_of_occasions(here[i], here[j]);
           const auto then = ratios.find(day);
@@ -90,8 +89,6 @@ Coverage coverage_of(const Runs& runs) {
           ++found.ratios;
           found.outside += then->second < ratio.low || then->second > ratio.high;
         }
-      }
-    }
   }
   return found;
 }

@@ -3,7 +3,6 @@
 #include "harness/points/suite.h"
 
 namespace harness::analysis {
-
 namespace {
 
 bool may_answer(const Point& p) {

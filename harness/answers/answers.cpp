@@ -4,7 +4,6 @@
 #include "harness/answers/answer.h"
 #include "harness/base/child_process.h"
 #include "harness/base/table.h"
-#include "harness/base/text.h"
 #include "harness/judge/drive.h"
 #include "harness/judge/mechanics.h"
 #include "harness/run/calibration.h"

@@ -164,7 +164,7 @@ double net_angle_deviation(const AnswerScene& at, const Motion& motion) {
   const double radius = at.parameters.at("radius"), link = square_link(at.parameters);
   double squares = 0;
   int cells = 0;
-  for (int i = 0; i + 1 < n; ++i) {
+  for (int i = 0; i + 1 < n; ++i)
     for (int j = 0; j + 1 < n; ++j) {
       const double u = (j + 1 - 0.5 * n) * link, v = (i + 1 - 0.5 * n) * link;
       const double z = u * v / (radius * radius);
@@ -179,7 +179,6 @@ double net_angle_deviation(const AnswerScene& at, const Motion& motion) {
       squares += std::pow(beyond - net_angle(std::abs(z)), 2);
       ++cells;
     }
-  }
   return cells ? std::sqrt(squares / cells) * 180 / std::numbers::pi : std::nan("");
 }
 

@@ -12,7 +12,6 @@
 #include <memory>
 #include <new>
 
-#include "harness/base/clock.h"
 #include "harness/base/files.h"
 
 namespace harness {

@@ -16,7 +16,7 @@ inline double since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// The clock of a program that works for this thread (points/processes.h).
+// The clock of a program that works for this thread (points/processes.cpp).
 inline std::optional<clockid_t> helper_clock;
 
 // Processor time of this thread, and of its helper, s. Costs a system call, a few hundred

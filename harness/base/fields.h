@@ -55,9 +55,8 @@ template <class Value>
 struct FieldCodec {
   static json write(const Value& value, bool nullable) {
     if constexpr (std::is_same_v<Value, double>) return number(value);
-    if constexpr (std::is_same_v<Value, std::string>) {
+    if constexpr (std::is_same_v<Value, std::string>)
       if (nullable && value.empty()) return nullptr;
-    }
     return value;
   }
 

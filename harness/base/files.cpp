@@ -11,7 +11,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
-#include <sstream>
 
 #include "build_info.h"  // made by CMake
 #include "harness/base/text.h"

@@ -13,8 +13,7 @@
 namespace harness {
 
 // A full disk or a missing folder: "cannot write 'a.json': No space left on device".
-class FileError : public std::runtime_error {
- public:
+struct FileError : std::runtime_error {
   FileError(const std::string& path, const std::string& verb,
             const std::string& reason = std::strerror(errno));
 };

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 
-#include <chrono>
 #include <cstdlib>
 #include <iostream>
 #include <thread>

@@ -1,10 +1,7 @@
 // C4, C7 to C10, C12 to C14 and C16: what works at all, residuals, shapes and strains.
-
-#include "harness/base/text.h"
 #include "harness/claims/claims.h"
 
 namespace harness::claims {
-
 namespace {
 
 // Over sampled steps with a second iteration; in others the first residual is the last one, too.
@@ -181,19 +178,6 @@ Verdict strain_after_collision(const Points& points) {
   return found;
 }
 
-double parabola_sag(double length, double strain) {
-  // Over the length, with a = 4 sag / length: (sqrt(1 + a^2) + asinh(a) / a) / 2.
-  const auto arc = [](double a) {
-    return a > 0 ? 0.5 * (std::sqrt(1 + a * a) + std::asinh(a) / a) : 1;
-  };
-  double low = 0, high = 4 * (1 + strain);  // the arc is longer than a / 2
-  for (int i = 0; i < 100; ++i) {
-    const double middle = 0.5 * (low + high);
-    (arc(middle) < 1 + strain ? low : high) = middle;
-  }
-  return 0.25 * length * low;
-}
-
 Slip slip_of(const Point& point) {
   const auto& sag = point.measures().sag;
   const double drop = point.scene_parameter("drop");
@@ -270,7 +254,7 @@ Verdict failure_configurations(const Points& points) {
   Verdict found;
   bool shake_always = true, shake_sometimes = false, others = true;
   std::string details;
-  for (const std::string q : {"Q1", "Q2", "Q3", "Q4"}) {
+  for (const std::string q : {"Q1", "Q2", "Q3", "Q4"})
     for (const std::string solver : {shake.name, fast_projection.name, icd.name}) {
       const auto cell = std::ranges::find_if(points.matrix, [&](const json* c) {
         return c->at("case") == q && c->at("solver") == solver;
@@ -287,7 +271,6 @@ Verdict failure_configurations(const Points& points) {
       shake_always = shake_always && (q == "Q3" || outcome == "refused");
       shake_sometimes = shake_sometimes || (q != "Q3" && fixed == "refused");
     }
-  }
   found.measured =
       "SHAKE: " + details + "; fast projection and ICD: " +
       (others ? "all four survived, Q3 at least with smaller steps" : "not all survived");

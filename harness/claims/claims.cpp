@@ -5,7 +5,6 @@
 
 #include "harness/analysis/plane.h"
 #include "harness/base/files.h"
-#include "harness/base/text.h"
 #include "harness/points/result_file.h"
 
 namespace harness::claims {
@@ -210,10 +209,9 @@ std::vector<ClaimVerdict> judge_claims(const std::vector<json>& results) try {
 
 void print_claims(std::ostream& out, const std::vector<ClaimVerdict>& claims) {
   out << "The paper compares times by strain alone, and so do verdicts; beside them is what holds "
-         "at "
-         "an error of at most 2 %. A 95 %\ninterval that holds a bound leaves a claim undecided. "
-         "Of "
-         "two parts (a) and (b), both: reproduced, one: changed, none: not\nreproduced.\n\n";
+         "at an error of at most 2 %. A 95 %\ninterval that holds a bound leaves a claim "
+         "undecided. Of two parts (a) and (b), both: reproduced, one: changed, none: "
+         "not\nreproduced.\n\n";
   for (const auto& c : claims) {
     out << c.id << " (" << c.where << "): " << c.statement << "\n  " << c.verdict;
     if (!c.measured.empty()) out << ": " << c.measured;
@@ -229,10 +227,9 @@ void print_claims(std::ostream& out, const std::vector<ClaimVerdict>& claims) {
 
 void print_claims_markdown(std::ostream& out, const std::vector<ClaimVerdict>& claims) {
   out << "| | claim | verdict | measured |\n|---|---|---|---|\n";
-  for (const auto& c : claims) {
+  for (const auto& c : claims)
     out << "| " << c.id << ", " << c.where << " | " << c.statement << " | " << c.verdict << " | "
         << c.measured << " |\n";
-  }
 }
 
 }  // namespace harness

@@ -81,10 +81,6 @@ Judge drape_time_over_strain, drape_time_over_resolution, residual_order, same_f
 Judge failure_configurations, no_drift, matrix_sizes, patch_sag, strain_after_collision;
 Judge degrees_of_freedom_left, shake_small_steps, garment_slip;
 
-// The sag of a yarn under a load even along the chord between its ends, `length` (m) apart: a
-// parabola whose arc is longer than the chord by `strain`.
-double parabola_sag(double length, double strain);
-
 // How far both ends of a garment's rim have slipped from the waist, over the way to the hips.
 struct Slip {
   double least, most;

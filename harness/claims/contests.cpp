@@ -1,6 +1,4 @@
 // C1 to C3, C5, C6, C11 and C15: which method is fast, how its time grows, and what its steps take.
-
-#include "harness/base/text.h"
 #include "harness/claims/claims.h"
 
 namespace harness::claims {

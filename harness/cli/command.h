@@ -4,7 +4,6 @@
 #include <initializer_list>
 #include <iostream>
 
-#include "harness/base/text.h"
 #include "harness/run/sweep.h"
 
 namespace CLI {

@@ -3,7 +3,6 @@
 
 #include "harness/analysis/measured_point.h"
 #include "harness/base/child_process.h"
-#include "harness/base/clock.h"
 #include "harness/base/timing_lock.h"
 #include "harness/cli/command.h"
 #include "harness/judge/reference_routes.h"

@@ -1,6 +1,5 @@
 // bench film: a scene as pictures, a film, or files for other programs.
 #include <numeric>
-#include <set>
 
 #include "harness/analysis/measured_point.h"
 #include "harness/cli/command.h"
@@ -13,8 +12,6 @@ namespace {
 constexpr int default_width = 480;
 
 using analysis::percent;
-
-const std::set<std::string> picture_endings{".webp", ".mp4", ".png"};
 
 std::string name_of(const FilmRun& run, const std::string& solver) {
   return solver + ", " + percent(run.strain_limit) + ", steps of " + step_text(run.step) + " s";
@@ -58,8 +55,8 @@ struct Film : SceneOptions {
     command.option("--width", width, "of each picture; default: 480", "PIXELS",
                    {.least = 16, .most = 4096, .whole = true});
     command.option("--out", out,
-                   ".webp or .mp4: a film; .png: stills; .obj: for other programs; "
-                   "default: results/local/film-<scene>.webp, .png with --stills",
+                   ".webp: a film; .png: stills; .obj: for other programs; default: "
+                   "results/local/film-<scene>.webp, .png with --stills",
                    "FILE");
   }
 
@@ -96,8 +93,8 @@ struct Film : SceneOptions {
   }
 
   void check_format(const std::string& ending) const {
-    if (!picture_endings.contains(ending) && ending != ".obj")
-      throw UsageError("--out '" + out + "': must end in .webp, .mp4, .png (stills) or .obj");
+    if (ending != ".webp" && ending != ".png" && ending != ".obj")
+      throw UsageError("--out '" + out + "': must end in .webp, .png (stills) or .obj");
     if (!stills.empty() && ending != ".png")
       throw UsageError("--stills: --out '" + out + "' must end in .png");
     if (width > 0 && ending == ".obj") throw UsageError("--width: '" + out + "' has no pictures");
@@ -138,10 +135,10 @@ struct Film : SceneOptions {
     const bool still = ending == ".png";
     const auto frames = shown_frames(still);  // before anything runs
     check_writable(out);
-    if (picture_endings.contains(ending)) check_povray();
+    if (ending != ".obj") check_povray();
     const Recording recording = recorded();
     print_times(recording);
-    if (picture_endings.contains(ending)) return draw_pictures(recording, frames, still);
+    if (ending != ".obj") return draw_pictures(recording, frames, still);
     const std::string folder = place.has_parent_path() ? place.parent_path().string() : ".";
     for (const FilmRun& run : recording.takes) {
       const std::string own_part =

@@ -1,5 +1,4 @@
 // bench list: prints solvers, scenes, suites and other lists.
-
 #include "harness/answers/answer.h"
 #include "harness/claims/claims.h"
 #include "harness/cli/command.h"

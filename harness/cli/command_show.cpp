@@ -1,6 +1,4 @@
 // bench show, claims, results, report and plot: result files printed and drawn.
-
-#include "harness/analysis/plane.h"
 #include "harness/answers/answer.h"
 #include "harness/claims/claims.h"
 #include "harness/cli/command.h"
@@ -146,13 +144,12 @@ struct Results : PageOptions {
   // The page begins with the command that generates it.
   std::string page() const {
     std::ostringstream text;
-    text
-        << "# Results\n\nTimes are the least of several samples. [measuring.md](measuring.md) says "
-           "what they mean, and how far they can be trusted. Ratios have their 95 % interval, "
-           "`3.5 (3.3-3.8)`; `3.5 (?)`: it is not known, for too few runs and no A/A pair. "
-           "`bench show RESULT.json --all` has every contestant of a file, `bench report` every "
-           "run. This page is generated; do not edit it. The command, which gives every file that "
-           "the numbers come from:\n\n```sh\n./bench results";
+    text << "# Results\n\nTimes are the least of several samples. [measuring.md](measuring.md) "
+            "says what they mean, and how far they can be trusted. Ratios have their 95 % "
+            "interval, `3.5 (3.3-3.8)`; `3.5 (?)`: it is not known, for too few runs and no A/A "
+            "pair. `bench show RESULT.json --all` has every contestant of a file, `bench report` "
+            "every run. This page is generated; do not edit it. The command, which gives every "
+            "file that the numbers come from:\n\n```sh\n./bench results";
     for (const auto& [option, names] : {std::pair("", &results), {" --answers", &answers}}) {
       if (!names->empty()) text << option;
       for (const std::string& file : *names) text << ' ' << file;

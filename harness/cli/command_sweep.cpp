@@ -3,7 +3,6 @@
 
 #include "harness/base/timing_lock.h"
 #include "harness/cli/command.h"
-#include "harness/judge/reference_routes.h"
 #include "harness/points/context.h"
 #include "harness/points/plugins.h"
 #include "harness/points/result_file.h"
@@ -12,9 +11,6 @@
 
 namespace harness {
 namespace {
-
-// Beyond this, even a few steps of a slow reference route take too long to time.
-constexpr int most_timed_vertices = 20000;
 
 // Probes the machine's noise between runs, and retakes disturbed samples while the budget lasts.
 Runner watched(const Runner& inner, NoiseProbe& noise_probe, bool timed) {
@@ -117,18 +113,13 @@ struct SweepCommand : SweepOptions, OutputOptions {
     const auto missing = without_reference(searches, references);
     if (missing.empty()) return;
     std::string names;
-    double seconds = 0;
-    for (const auto& [file, scene_of_file] : missing) {
-      const auto& [type, parameters] = scene_of_file;
-      names += (names.empty() ? "" : ", ") + file.substr(0, file.rfind(".json"));
-      if (find_scene(type)->counts(parameters).first <= most_timed_vertices)
-        seconds += reference_seconds(type, parameters);
-    }
+    for (const auto& [file, scene_of_file] : missing)
+      append(names, file.substr(0, file.rfind(".json")));
     if (finest_error > 0)
       throw UsageError("--finest-error needs references, missing: " + names +
                        " (bench reference, with the same scene and profile, makes them)");
     std::cerr << "bench: no reference, so no trajectory error, for " << names
-              << " (bench reference makes them, in about " << duration_text(seconds) << ")\n";
+              << " (bench reference makes them)\n";
   }
 
   // Includes the options that choose points of the suite.

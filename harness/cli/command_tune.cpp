@@ -44,11 +44,10 @@ void add_places(TunedEntry& entry, const std::vector<TunedPlace>& found) {
 }
 
 void print(const TunedEntry& entry) {
-  for (const TunedPlace& p : entry.places) {
+  for (const TunedPlace& p : entry.places)
     std::cout << std::left << std::setw(15) << entry.kind << std::setw(35) << entry.solver
               << std::setw(6) << p.resolution << std::setw(8) << number_text(100 * p.limit) + " %"
               << std::setw(7) << number_text(p.gain(), 3) << json(p.settings).dump() << std::endl;
-  }
 }
 
 struct Tune {
@@ -148,10 +147,9 @@ struct Tune {
     const Runner run = with_references(isolated(run_point, 0), ReferenceFolder::usual());
     std::cout
         << "kind           solver                             size  limit   gain   settings\n";
-    for (const SweepSpec& on : chosen) {
+    for (const SweepSpec& on : chosen)
       for (const std::string& name : chosen_solvers(solver, on))
         if (tune_one(on, name, run, entries)) write_entries(file, entries);
-    }
     std::cout << "\nwritten:\n" << file << std::endl;
     return success;
   }

@@ -1,8 +1,6 @@
 // bench: the command line. Only this file includes CLI11, which takes ten seconds to compile.
 #include <CLI/CLI.hpp>
-#include <cerrno>
 #include <cstdlib>
-#include <cstring>
 
 #include "harness/base/child_process.h"
 #include "harness/cli/command.h"
@@ -11,7 +9,6 @@
 #include "harness/points/plugins.h"
 
 namespace harness {
-
 namespace {
 
 // A number within bounds, with the message that files get too.
@@ -100,8 +97,7 @@ std::string version_text() {
          build.at("type").get<std::string>() + " by " + build.at("compiler").get<std::string>() +
          " with " + build.at("flags").get<std::string>() +
          "\nThe source is MIT licensed. This program links GSL and parts of SuiteSparse, and is as "
-         "a "
-         "whole\nunder the GNU GPL, version 3 or later (NOTICE). There is no warranty.";
+         "a whole\nunder the GNU GPL, version 3 or later (NOTICE). There is no warranty.";
 }
 
 void load(const Words& plugins) {

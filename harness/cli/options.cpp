@@ -1,4 +1,3 @@
-
 #include "harness/cli/command.h"
 #include "harness/scenes/scene_folder.h"
 

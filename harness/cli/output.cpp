@@ -1,10 +1,8 @@
-
 #include <fstream>
 #include <set>
 
 #include "harness/answers/answer.h"
 #include "harness/base/child_process.h"
-#include "harness/base/clock.h"
 #include "harness/claims/claims.h"
 #include "harness/cli/command.h"
 #include "harness/points/context.h"
@@ -75,9 +73,9 @@ std::optional<json> begin_journal(const OutputOptions& options, const std::strin
     return context;
   }
   if (!options.force && exists(out))
-    throw UsageError("'" + out +
-                     "' exists: --force replaces it, --resume completes it, and another "
-                     "--out keeps both");
+    throw UsageError(
+        "'" + out +
+        "' exists: --force replaces it, --resume completes it, and another --out keeps both");
   journal.start(header);
   return json();
 }
@@ -203,8 +201,8 @@ int draw(const std::string& script, const Words& arguments, const std::string& o
   const ProgramResult ran = run_program(words, std::numeric_limits<double>::infinity());
   std::cerr << ran.err;
   if (ran.exit_code == 127)
-    std::cerr << "bench: figures need /usr/bin/python3 with matplotlib (Debian: "
-                 "python3-matplotlib)\n";
+    std::cerr
+        << "bench: figures need /usr/bin/python3 with matplotlib (Debian: python3-matplotlib)\n";
   if (ran.exit_code != 0) return ran.exit_code;
   std::error_code error;
   fs::create_directories(place.parent_path(), error);

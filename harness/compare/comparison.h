@@ -146,8 +146,7 @@ struct Comparison {
 };
 
 // Build, machine or scenes differ so much that a comparison would be meaningless.
-class NotComparable : public std::runtime_error {
- public:
+struct NotComparable : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 

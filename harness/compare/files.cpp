@@ -2,7 +2,6 @@
 #include "harness/base/files.h"
 
 #include "harness/base/table.h"
-#include "harness/base/text.h"
 #include "harness/compare/comparison.h"
 #include "harness/points/context.h"
 #include "harness/points/result_file.h"

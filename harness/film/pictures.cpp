@@ -1,5 +1,4 @@
 #include <Eigen/Geometry>
-#include <atomic>
 #include <future>
 #include <mutex>
 #include <numbers>
@@ -86,7 +85,7 @@ std::vector<Vector3d> in_sight(const Recording& recording, const std::vector<std
     reach = std::max(reach, (x->colwise() - at_first).colwise().norm().maxCoeff());
   const double followed = (body ? near_body : near_start) * reach;
   std::vector<Vector3d> all;
-  for (const FilmRun& take : recording.takes) {
+  for (const FilmRun& take : recording.takes)
     for (const std::size_t shown : frames) {
       const std::size_t frame = std::min(shown, take.frames.size() - 1);
       Vector3d middle = at_first;
@@ -97,7 +96,6 @@ std::vector<Vector3d> in_sight(const Recording& recording, const std::vector<std
       const Positions around = body_at(recording, frame);
       for (const Eigen::Index i : near) all.emplace_back(around.col(i));
     }
-  }
   return all;
 }
 

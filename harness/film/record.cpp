@@ -1,9 +1,6 @@
-
 #include <iomanip>
-#include <sstream>
 
 #include "harness/base/files.h"
-#include "harness/base/text.h"
 #include "harness/film/film.h"
 #include "harness/judge/drive.h"
 #include "harness/judge/mechanics.h"

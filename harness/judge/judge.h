@@ -1,12 +1,37 @@
 // The harness judges: strain, energy and errors, from positions and off the clock.
 #pragma once
 
-#include "harness/judge/crossings.h"
 #include "harness/judge/mechanics.h"
 #include "harness/judge/reference.h"
 #include "solvers/problem/edge_constraints.h"
+#include "solvers/problem/triangle_collider.h"
 
 namespace harness {
+
+// Vertices that passed through the body within a step: in through a face, and out through one that
+// looks the other way. Such a vertex was never seen inside, so no contact held it. A way that cuts
+// a bulge or a corner of the body leaves through a face that looks a similar way, and is none.
+class Crossings {
+ public:
+  // Without a body made of triangles it sees nothing, and costs nothing.
+  explicit Crossings(const Problem& problem);
+
+  // Before and after each step.
+  void before(const State& state);
+  void after(const State& state);
+
+  int vertices() const;  // that have passed through so far
+
+ private:
+  Positions in_body_frame(const State& state) const;
+  bool passes_through(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+
+  const Problem& problem_;
+  const inextensible::TriangleMesh* body_ = nullptr;
+  double thickness_ = 0;  // m, about the least of the body
+  Positions from_;
+  std::vector<char> crossed_;
+};
 
 // The residual of a projection method (Goldenthal et al. 2007, section 4.2 and Figure 3), off the
 // clock: after iteration j, F_j = (x_j - x_0) + h^2 W J(x_j)^T lambda_j with lambda_j the sum of

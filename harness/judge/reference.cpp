@@ -3,10 +3,8 @@
 #include <algorithm>
 
 #include "harness/base/files.h"
-#include "harness/base/text.h"
 
 namespace harness {
-
 namespace {
 
 constexpr const char* reference_schema = "inextensible-reference/2";

@@ -3,13 +3,11 @@
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 
-#include "harness/base/text.h"
 #include "harness/judge/drive.h"
 #include "harness/judge/mechanics.h"
 #include "harness/scenes/pendulum.h"
 
 namespace harness {
-
 namespace {
 
 constexpr double perturbation = 1e-10;  // of a start, over the scene's size
@@ -349,27 +347,6 @@ const RouteRun& RouteRuns::run(const std::string& name, const std::function<Rout
 Reference compute_reference(const std::string& scene, const SceneParameters& complete,
                             double finest, RouteRuns& runs) {
   return ReferenceMaker(scene, complete, runs).by_two_routes(finest);
-}
-
-double reference_seconds(const std::string& name, const SceneParameters& complete) {
-  constexpr int steps = 5;
-  const auto type = find_scene(name);
-  if (type->pendulum || type->exact) return 0;
-  const Scene scene = type->build(complete);
-  const double h = usual_finest;
-  const auto [first, second, third] = contact_routes(scene, h);
-  // runs: how many from start to end, one at this step counting 1.
-  const auto seconds = [&](const Route& route, double step, double runs) {
-    const auto stepper = stepper_of(route, scene);
-    State state = scene.start;
-    stepper->advance(state, step);
-    const auto begin = Clock::now();
-    for (int k = 0; k < steps; ++k) stepper->advance(state, step);
-    return since(begin) / steps * scene.duration / step * runs;
-  };
-  const double own = third ? 2.5 : 3.5, other = third ? 1.8 : 1.2;  // runs in by_contact_routes
-  return seconds(first, h, own) + seconds(second, h, other) +
-         (third ? seconds(*third, 8 * h, 1) : 0);
 }
 
 }  // namespace harness

@@ -43,7 +43,4 @@ Reference compute_reference(const std::string& scene, const SceneParameters& com
 // s; what `bench choose` takes.
 constexpr double quick_finest = sample_interval / 32;
 
-// s that compute_reference takes, estimated from a few steps. 0 for pendulums, which take seconds.
-double reference_seconds(const std::string& scene, const SceneParameters& complete);
-
 }  // namespace harness

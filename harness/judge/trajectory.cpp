@@ -1,7 +1,6 @@
 #include "harness/judge/trajectory.h"
 
 #include "harness/base/files.h"
-#include "harness/base/text.h"
 #include "harness/judge/mechanics.h"
 #include "harness/scenes/mesh_file.h"
 #include "solvers/problem/triangle_collider.h"

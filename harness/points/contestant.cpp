@@ -91,8 +91,7 @@ void check_plain_name(const std::string& name, const std::string& where) {
   if (!has_form(name, "[a-z0-9_]+(@[a-z0-9_]+)?"))
     throw UsageError(
         where + " is " + value_text(name) +
-        ", must be made of a-z, 0-9 and _, with one @ at most (it becomes part of point "
-        "ids)");
+        ", must be made of a-z, 0-9 and _, with one @ at most (it becomes part of point ids)");
 }
 
 Settings Contestant::settings_for(int resolution, double limit) const {

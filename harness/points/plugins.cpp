@@ -9,7 +9,6 @@
 #include "harness/base/child_process.h"
 #include "harness/base/files.h"
 #include "harness/base/text.h"
-#include "harness/points/processes.h"
 #include "solvers/c_method.h"
 #include "solvers/registry.h"
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
+
+#include "solvers/methods/backend.h"
 
 namespace harness {
 
@@ -23,5 +23,17 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Plugin, file, version, hash, solvers, optimiz
 void load_plugin(const std::string& path);
 
 const std::vector<Plugin>& loaded_plugins();  // in the order of loading
+
+// ---- Programs of their own: `bench --plugin 'cmd:./my_engine --bench'`. The scene goes to them as
+// files (scenes/scene_folder.h), steps as numbers through pipes (docs/plugins.md) ----
+
+struct ProcessSolver {
+  inextensible::Backend row;
+  std::string version;
+};
+
+// Starts the program, which describes itself, and ends it. Throws std::runtime_error, saying what
+// is wrong. command: as for a shell; its texts live until this program ends.
+ProcessSolver process_solver(const std::string& command);
 
 }  // namespace harness

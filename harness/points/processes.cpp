@@ -1,5 +1,3 @@
-#include "harness/points/processes.h"
-
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -11,16 +9,14 @@
 #include "harness/base/files.h"
 #include "harness/base/json.h"
 #include "harness/base/text.h"
+#include "harness/points/plugins.h"
 #include "harness/scenes/scene_folder.h"
 #include "solvers/c_method.h"
 
 namespace harness {
 namespace {
 
-using inextensible::Positions;
-using inextensible::State;
-using inextensible::Status;
-using inextensible::StepResult;
+using inextensible::Positions, inextensible::State, inextensible::Status, inextensible::StepResult;
 
 // A program whose standard input and output are ours. Its errors go where ours go, and it ends with
 // this process at the latest.
@@ -158,8 +154,8 @@ ProcessSolver process_solver(const std::string& command) {
   const json about = Process(command).hear();
   if (about.value("inextensible", 0) != 1)
     throw std::runtime_error(
-        "its first line must be a JSON object with \"inextensible\": 1, the "
-        "version of the protocol (docs/plugins.md)");
+        "its first line must be a JSON object with \"inextensible\": 1, the version of the "
+        "protocol (docs/plugins.md)");
   const auto text = [&](const char* key) { return kept(about.value(key, "")); };
   inextensible::Backend row{.name = text("name"), .summary = text("summary")};
   row.label = text("label");

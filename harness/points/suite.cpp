@@ -68,12 +68,11 @@ SweepSpec read_sweep(const json& object, const std::string& where, const Tuned* 
 // One name is one solver, in all sweeps, for it has one place in the legend.
 void check_contestants(const Suite& suite, const std::string& where) {
   std::map<std::string, std::string> solvers;
-  for (const SweepSpec& sweep : suite.sweeps) {
+  for (const SweepSpec& sweep : suite.sweeps)
     for (const Contestant& c : sweep.contestants)
       if (const auto [place, fresh] = solvers.emplace(c.name, c.solver); place->second != c.solver)
         throw UsageError(where + ": '" + c.name + "' is solver '" + place->second +
                          "' in one sweep and '" + c.solver + "' in another");
-  }
   if (!suite.same.empty())
     check_known("contestant", suite.same, names_of(contestants_of(suite)), where + ": 'same'");
 }
@@ -90,10 +89,9 @@ std::vector<double> levels_of(const Suite& suite) {
 
 Contestants contestants_of(const Suite& suite) {
   Contestants all;
-  for (const SweepSpec& sweep : suite.sweeps) {
+  for (const SweepSpec& sweep : suite.sweeps)
     for (const Contestant& c : sweep.contestants)
       if (find_contestant(all, c.name) == all.end()) all.push_back(c);
-  }
   return all;
 }
 

@@ -1,12 +1,10 @@
 // The Python module `inextensible`: bench's scenes, solvers and judge on numpy arrays.
 #include <pybind11/stl.h>
 
-#include "harness/base/text.h"
 #include "harness/judge/drive.h"
 #include "harness/judge/mechanics.h"
 #include "harness/python/views.h"
 #include "solvers/c_method.h"
-#include "solvers/problem/forces.h"
 
 namespace inextensible::python {
 namespace {
@@ -112,8 +110,7 @@ class Solver {
 
 PYBIND11_MODULE(inextensible, module) {
   using namespace inextensible::python;
-  using inextensible::State;
-  using py::arg;
+  using inextensible::State, py::arg;
   py::register_exception<harness::UsageError>(module, "UsageError", PyExc_ValueError);
   py::class_<Scene>(module, "Scene")
       .def(py::init<const std::string&, const py::kwargs&>(), arg("name"))

@@ -3,7 +3,6 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_roots.h>
 
-#include "harness/base/text.h"
 #include "harness/judge/mechanics.h"
 
 namespace harness {

@@ -2,8 +2,6 @@
 
 #include <numeric>
 
-#include "harness/base/text.h"
-
 namespace harness {
 namespace {
 
@@ -68,12 +66,11 @@ void repeat_finalists(std::vector<PointResult>& points, const Suite& suite, cons
                       const ChooseLimits& limits, const Runner& run) {
   const auto stop = stop_at(limits, 1);
   try {
-    for (std::size_t round = 1; round < final_samples; ++round) {
+    for (std::size_t round = 1; round < final_samples; ++round)
       for (PointResult* point : fastest_runs(points, wish)) {
         if (stop()) return;
         add_sample(*point, run, {.timeout = suite.timeout, .interrupted = stop});
       }
-    }
   } catch (const Interrupted&) {
   }
 }

@@ -1,7 +1,6 @@
 #include "harness/run/execute.h"
 
 #include "harness/base/child_process.h"
-#include "harness/base/text.h"
 #include "harness/points/point_json.h"
 
 namespace harness {

@@ -9,12 +9,11 @@ constexpr int first_looks = 10;
 // A recurrence that waits for every result, over an array that fills the second-level cache.
 double recurrence(std::vector<double>& data, int passes) {
   double carried = 1;
-  for (int pass = 0; pass < passes; ++pass) {
+  for (int pass = 0; pass < passes; ++pass)
     for (double& value : data) {
       carried = 0.5 * value + 0.25 * carried;
       value = 1 + 1e-9 * carried;
     }
-  }
   return carried;
 }
 

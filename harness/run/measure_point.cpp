@@ -2,9 +2,7 @@
 
 #include <fstream>
 #include <new>
-#include <stdexcept>
 
-#include "harness/base/text.h"
 #include "harness/judge/mechanics.h"
 #include "harness/run/calibration.h"
 #include "harness/run/machine_noise.h"

@@ -1,4 +1,3 @@
-
 #include "harness/run/sweep.h"
 
 namespace harness {
@@ -10,10 +9,9 @@ constexpr double refinements[] = {1, 1.2, 1.44, 1.68};
 
 std::vector<double> step_ladder(const SweepSpec& sweep, std::span<const double> divisors) {
   std::vector<double> ladder;
-  for (double h = sweep.coarsest; h >= sweep.finest * (1 - 1e-9); h /= 2) {
+  for (double h = sweep.coarsest; h >= sweep.finest * (1 - 1e-9); h /= 2)
     for (const double divisor : divisors)
       if (h / divisor >= sweep.finest * (1 - 1e-9)) ladder.push_back(h / divisor);
-  }
   return ladder;
 }
 

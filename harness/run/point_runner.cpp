@@ -9,7 +9,6 @@
 #include "harness/run/calibration.h"
 
 namespace harness {
-
 namespace {
 
 // A run that hardly moves keeps its strain and energy, as in single precision at tiny steps. Phase
@@ -44,14 +43,13 @@ FrameTimes::FrameTimes(double step) {
 
 void FrameTimes::add(int steps, double step, double time, double seconds) {
   time_ = time;
-  for (Film& film : films_) {
+  for (Film& film : films_)
     for (int k = 0; k < steps; ++k) {
       const double end = (time - k * step) * film.rate;  // in frames
       const auto frame = static_cast<std::size_t>(std::max(0.0, std::ceil(end - rounding) - 1));
       if (film.seconds.size() <= frame) film.seconds.resize(frame + 1, 0.0);
       film.seconds[frame] += seconds / steps;
     }
-  }
 }
 
 std::vector<FrameTime> FrameTimes::summary() const {

@@ -163,7 +163,7 @@ class StepSearch {
   void refine() {
     if (ladder_.stride == 1 || unsupported_) return;
     std::set<std::size_t> tried;
-    for (const double level : levels_) {
+    for (const double level : levels_)
       for (bool moved = true; moved;) {
         const auto best = best_rung(level);
         if (!best) break;
@@ -175,7 +175,6 @@ class StepSearch {
         }
         moved = best_rung(level) != best;
       }
-    }
   }
 
   double too_long() const {

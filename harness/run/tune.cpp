@@ -3,7 +3,6 @@
 #include <random>
 #include <set>
 
-#include "harness/base/text.h"
 #include "harness/run/step_search.h"
 
 namespace harness {
@@ -319,7 +318,7 @@ TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene, TuneOp
   Contestant there{.name = solver, .solver = solver};
   if (known) there.settings_at = known->settings_at();
   Values guess;
-  for (const int size : scene.resolutions) {
+  for (const int size : scene.resolutions)
     for (const double limit : scene.limits) {
       SweepSpec here = scene;
       here.contestants = {{solver, solver}};
@@ -331,7 +330,6 @@ TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene, TuneOp
                            .run(guess))
         entry.places.push_back(std::move(*place));
     }
-  }
   return entry;
 }
 

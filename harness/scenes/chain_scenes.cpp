@@ -7,7 +7,6 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <cmath>
-#include <stdexcept>
 
 #include "harness/scenes/meshes.h"
 
@@ -221,9 +220,8 @@ std::vector<SceneType> line_scenes() {
        .counts = count_row,
        .like = "chain"},
       {.name = "whip",
-       .summary =
-           "a chain folded into a U without weight, one arm pinned, the other moving: its end "
-           "cracks",
+       .summary = "a chain folded into a U without weight, one arm pinned, the other moving: its "
+                  "end cracks",
        .parameters = row_parameters(
            vertices(80, 4), {{"speed", 1, "of the moving arm at the start, m/s", 0, 1e4}}, 0.7),
        .build = build_folded,

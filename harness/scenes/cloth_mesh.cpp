@@ -6,7 +6,6 @@
 #include <numbers>
 #include <set>
 
-#include "harness/base/text.h"
 #include "solvers/problem/closed_surface.h"
 
 namespace harness {
@@ -41,14 +40,13 @@ double obliqueness(const std::vector<Eigen::Vector3d>& x, const std::array<int, 
 
 void check_sides(const MeshFile& file, const std::vector<MeshFile::Face>& faces) {
   std::map<Side, int> faces_at;
-  for (const MeshFile::Face& face : faces) {
+  for (const MeshFile::Face& face : faces)
     for (std::size_t k = 0; k < face.corners.size(); ++k) {
       const Side s = side_of(face.corners, k);
       if (++faces_at[s] > 2)
         throw UsageError(concat(file.name(face), ": the side between vertices ", s.first + 1,
                                 " and ", s.second + 1, " belongs to more than two faces"));
     }
-  }
 }
 
 // Whether the first side of a quad runs along u of the texture and not along v, and how far its
@@ -85,7 +83,7 @@ std::vector<Pairing> pairings(const std::vector<Eigen::Vector3d>& x,
                               const std::vector<TextureTriangle>& texture) {
   std::map<Side, std::pair<std::size_t, std::size_t>> first;  // triangle and corner before the side
   std::vector<Pairing> all;
-  for (std::size_t j = 0; j < triangles.size(); ++j) {
+  for (std::size_t j = 0; j < triangles.size(); ++j)
     for (std::size_t k = 0; k < 3; ++k) {
       const auto [found, fresh] = first.try_emplace(side_of(triangles[j], k), j, k);
       if (fresh) continue;
@@ -103,7 +101,6 @@ std::vector<Pairing> pairings(const std::vector<Eigen::Vector3d>& x,
       }
       if (how.oblique <= most_oblique) all.push_back({how, i, j, quad});
     }
-  }
   std::ranges::stable_sort(all, {}, [](const Pairing& pair) { return pair.grain.oblique; });
   std::vector<char> taken(triangles.size(), 0);
   std::erase_if(all, [&](const Pairing& pair) {
@@ -133,10 +130,9 @@ struct Refinement {
     if (i == n) return b;
     const Side s = side(a, b);
     const auto [found, fresh] = first_on.try_emplace(s, static_cast<int>(fine.vertices.size()));
-    if (fresh) {
+    if (fresh)
       for (int k = 1; k < n; ++k)
         add((1 - part(k)) * mesh.vertices[s.first] + part(k) * mesh.vertices[s.second]);
-    }
     return found->second + (a == s.first ? i : n - i) - 1;
   }
 
@@ -165,10 +161,9 @@ struct Refinement {
     std::vector<std::vector<int>> at(n + 1, std::vector<int>(n + 1));
     for (int i = 0; i <= n; ++i)
       for (int j = 0; j <= n; ++j) at[i][j] = in_quad(quad, i, j);
-    for (int i = 0; i < n; ++i) {
+    for (int i = 0; i < n; ++i)
       for (int j = 0; j < n; ++j)
         fine.quads.push_back({at[i][j], at[i][j + 1], at[i + 1][j + 1], at[i + 1][j]});
-    }
   }
 
   void cut(const std::array<int, 3>& triangle) {
@@ -178,12 +173,11 @@ struct Refinement {
       if (fresh) found->second = in_triangle(triangle, i, j);
       return found->second;
     };
-    for (int i = 0; i < n; ++i) {
+    for (int i = 0; i < n; ++i)
       for (int j = 0; i + j < n; ++j) {
         fine.triangles.push_back({at(i, j), at(i + 1, j), at(i, j + 1)});
         if (i + j + 1 < n) fine.triangles.push_back({at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
       }
-    }
   }
 };
 
@@ -212,14 +206,13 @@ std::vector<std::array<int, 3>> yarns_of(const ClothMesh& mesh) {
   }
   // Neighbours of a corner that are in one quad with it are not opposite each other.
   std::vector<std::set<Side>> beside(mesh.vertices.size());
-  for (const auto& quad : mesh.quads) {
+  for (const auto& quad : mesh.quads)
     for (std::size_t k = 0; k < 4; ++k)
       beside[quad[k]].insert(side(quad[(k + 1) % 4], quad[(k + 3) % 4]));
-  }
   std::vector<std::array<int, 3>> yarns;
   for (std::size_t v = 0; v < ends.size(); ++v) {
     if (ends[v].size() > 4) continue;
-    for (const int a : ends[v]) {
+    for (const int a : ends[v])
       for (const int b : ends[v]) {
         if (a >= b || beside[v].contains(side(a, b))) continue;
         // Within the cloth a side has one side opposite; on its rim the two along it are.
@@ -228,7 +221,6 @@ std::vector<std::array<int, 3>> yarns_of(const ClothMesh& mesh) {
         });
         if (others == 1 && ends[v].size() >= 3) yarns.push_back({a, static_cast<int>(v), b});
       }
-    }
   }
   return yarns;
 }

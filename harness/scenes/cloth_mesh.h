@@ -2,8 +2,6 @@
 // weft, and a fabric's forces in physical units.
 #pragma once
 
-#include <utility>
-
 #include "harness/scenes/mesh_file.h"
 #include "harness/scenes/meshes.h"
 
@@ -49,14 +47,13 @@ ParameterInfos with_cloth_parameters(const ParameterInfos& own, const ClothDefau
                                      double duration);
 
 // The cloth is at rest, and unstretched, as the mesh lies. Sides of quads and ropes keep their
-// length;
-// diagonals of quads, and the other sides of triangles, are springs of the shear stiffness (each
-// diagonal bears G (l gamma)^2 / 4 of a square sheared by gamma); yarns bend, straight at rest, and
-// triangles of midpoints against each other, flat at rest;
-// all forces act as they are at the end of a step. Parameters: density (kg/m^2), gravity, shear
-// (N/m), bending (N m), drag (N s/m^3), duration, line_density (kg/m) if there are ropes, and
-// weft_bending and weft_limit (of weft over that of warp) if the texture tells them apart. Left to the caller: the
-// scene's size, and what is not at rest there.
+// length; diagonals of quads, and the other sides of triangles, are springs of the shear stiffness
+// (each diagonal bears G (l gamma)^2 / 4 of a square sheared by gamma); yarns bend, straight at
+// rest, and triangles of midpoints against each other, flat at rest; all forces act as they are at
+// the end of a step. Parameters: density (kg/m^2), gravity, shear (N/m), bending (N m), drag (N
+// s/m^3), duration, line_density (kg/m) if there are ropes, and weft_bending and weft_limit (of
+// weft over that of warp) if the texture tells them apart. Left to the caller: the scene's size,
+// and what is not at rest there.
 Draft cloth_draft(const ClothMesh& mesh, const SceneParameters& p);
 
 // Its vertices and constraints.

@@ -195,20 +195,18 @@ ClothMesh disc_of(const SceneParameters& p) {
   };
   ClothMesh disc;
   std::vector<int> number(n * n, -1);
-  for (int i = 0; i < n; ++i) {
+  for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {
       if (!quad(i, j) && !quad(i - 1, j) && !quad(i, j - 1) && !quad(i - 1, j - 1)) continue;
       number[i * n + j] = static_cast<int>(disc.vertices.size());
       disc.vertices.emplace_back(place(j), 0, place(i));
       disc.held.push_back(std::hypot(place(i), place(j)) <= p.at("table"));
     }
-  }
-  for (int i = 0; i < n; ++i) {
+  for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {
       const int* at = number.data() + i * n + j;
       if (quad(i, j)) disc.quads.push_back({at[0], at[1], at[n + 1], at[n]});
     }
-  }
   return disc;
 }
 
@@ -258,8 +256,7 @@ std::vector<SceneType> cloth_scenes() {
        .parameters = drape_parameters(
            stiff_cotton(71),
            {{"off_axis", 0.08,
-             "how far its middle is from the sphere's axis along x, and half as far "
-             "along -z, m",
+             "how far its middle is from the sphere's axis along x, and half as far along -z, m",
              -10, 10}},
            3),
        .build = build_drape,
@@ -271,8 +268,8 @@ std::vector<SceneType> cloth_scenes() {
        .counts = count_square,
        .like = "patch"},
       {.name = "sliding_block",
-       .summary = "a square of cloth that slides on a table until friction stops it: its motion is "
-                  "known",
+       .summary =
+           "a square of cloth that slides on a table until friction stops it: its motion is known",
        .parameters = joined({cloth_parameters(5),
                              {{"speed", 1, "at the start, m/s", 0, 1e4},
                               {"friction", 0.3, "Coulomb coefficient", 0, 1e3},
@@ -308,8 +305,7 @@ std::vector<SceneType> cloth_scenes() {
        .counts = count_square},
       {.name = "cusick",
        .summary =
-           "a disc of cotton broadcloth hangs over the edge of a round table (Cusick's drape "
-           "test)",
+           "a disc of cotton broadcloth hangs over the edge of a round table (Cusick's drape test)",
        .parameters = with_cloth_parameters(
            {{"n", 31, "vertices along the disc's diameter", 7, 1000, true},
             {"radius", 0.15, "of the disc, m", 0, 1e6},

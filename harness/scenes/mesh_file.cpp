@@ -149,9 +149,8 @@ std::string obj_text(const Eigen::Matrix3Xd& x, const std::vector<std::array<int
   for (const auto& v : x.colwise()) out << "v " << v.x() << ' ' << v.y() << ' ' << v.z() << '\n';
   for (const auto& [a, b, c] : triangles)
     out << "f " << a + 1 << ' ' << b + 1 << ' ' << c + 1 << '\n';
-  if (triangles.empty()) {
+  if (triangles.empty())
     for (const auto& [a, b] : edges) out << "l " << a + 1 << ' ' << b + 1 << '\n';
-  }
   return out.str();
 }
 

@@ -1,7 +1,6 @@
 // Meshes in Wavefront's OBJ format, as their exporters mean them.
 #pragma once
 
-#include <array>
 #include <string>
 
 #include "solvers/problem/problem.h"

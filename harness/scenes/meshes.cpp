@@ -46,7 +46,7 @@ Draft vertex_square(const SceneParameters& p, double y) {
   const double mass = fabric ? p.at("density") * side * side : p.at("mass");
   parts.mass.assign(n * n, mass / (n * n));
   const auto vertex = [n](int i, int j) { return i * n + j; };
-  for (int i = 0; i < n; ++i) {
+  for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {
       // (2 j - (n - 1)) is exactly antisymmetric, so that the start is mirror symmetric to the last
       // bit.
@@ -55,16 +55,14 @@ Draft vertex_square(const SceneParameters& p, double y) {
       if (j + 1 < n) square.constrain(vertex(i, j), vertex(i, j + 1), l);  // weft
       if (i + 1 < n) square.constrain(vertex(i, j), vertex(i + 1, j), l);  // warp
     }
-  }
   inextensible::Springs diagonals;
-  for (int i = 0; i + 1 < n; ++i) {
+  for (int i = 0; i + 1 < n; ++i)
     for (int j = 0; j + 1 < n; ++j) {
       const int a = vertex(i, j), b = vertex(i, j + 1), c = vertex(i + 1, j),
                 d = vertex(i + 1, j + 1);
       diagonals.edges.insert(diagonals.edges.end(), {{a, d}, {b, c}});
       scene.triangles.insert(scene.triangles.end(), {{a, b, c}, {d, c, b}});
     }
-  }
   if (p.at("shear") > 0) {
     diagonals.rest_length.assign(diagonals.edges.size(), std::sqrt(2.0) * l);
     diagonals.stiffness.assign(diagonals.edges.size(), p.at("shear"));

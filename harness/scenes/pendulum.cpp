@@ -5,7 +5,6 @@
 #include <gsl/gsl_odeiv2.h>
 
 #include <cmath>
-#include <stdexcept>
 
 namespace harness {
 
@@ -84,10 +83,9 @@ Positions Pendulum::positions() const {
   const auto n = static_cast<Eigen::Index>(links_.mass.size());
   Positions x(3, n + 1);
   x.col(0).setZero();
-  for (Eigen::Index i = 0; i < n; ++i) {
+  for (Eigen::Index i = 0; i < n; ++i)
     x.col(i + 1) =
         x.col(i) + links_.length[i] * Eigen::Vector3d(std::cos(state_[i]), std::sin(state_[i]), 0);
-  }
   return x;
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <iterator>
 
-#include "harness/base/text.h"
 #include "harness/scenes/meshes.h"
 #include "harness/scenes/scene_folder.h"
 

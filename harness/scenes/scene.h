@@ -4,8 +4,6 @@
 
 #include <map>
 #include <span>
-#include <string>
-#include <string_view>
 #include <utility>
 
 #include "harness/base/text.h"

@@ -6,7 +6,6 @@
 
 #include "harness/base/files.h"
 #include "harness/base/json.h"
-#include "harness/base/text.h"
 #include "harness/scenes/mesh_file.h"
 #include "harness/scenes/meshes.h"
 #include "solvers/problem/triangle_collider.h"

@@ -57,42 +57,39 @@ const SceneParameterInfo turns_info{"turns", 1, "1/s, at the start", 0, 1e4};
 }  // namespace
 
 std::vector<SceneType> spinning_scenes() {
-  return {
-      {.name = "spinning_net",
-       .summary = "a square of cloth that spins in its plane, free and without weight: its motion "
-                  "is known",
-       .parameters = {{"n", 21, "vertices along each side", 2, 4000, true},
-                      {"side", 1, "m", 0, 1e6},
-                      {"mass", 0.2, "total, kg", 0, 1e6},
-                      {"shear", 0.1, "spring stiffness on both diagonals of each quad, N/m",
-                       zero_too, 1e9},
-                      turns_info,
-                      duration_info()},
-       .build = build_net,
-       .counts = count_square,
-       .exact = turned_start<build_net, 1>},
-      {.name = "baton",
-       .summary =
-           "a straight chain that spins about its middle, free and without weight: its motion "
-           "is known",
-       .parameters = row_parameters({"n", 21, "vertices", 2, 10'000'000, true}, {turns_info}),
-       .build = build_baton,
-       .counts = count_row,
-       .exact = turned_start<build_baton, 2>,
-       .like = "chain"},
-      {.name = "hoop",
-       .summary =
-           "a closed chain that spins as a regular polygon, free and without weight: its motion "
-           "is known",
-       .parameters = {{"n", 40, "vertices", 3, 10'000'000, true},
-                      {"radius", 0.5, "m", 0, 1e6},
-                      {"mass", 1, "total, kg", 0, 1e6},
-                      turns_info,
-                      duration_info()},
-       .build = build_hoop,
-       .counts = [](const SceneParameters& p) { return std::pair(whole(p), whole(p)); },
-       .exact = turned_start<build_hoop, 2>,
-       .like = "chain"}};
+  return {{.name = "spinning_net",
+           .summary = "a square of cloth that spins in its plane, free and without weight: its "
+                      "motion is known",
+           .parameters = {{"n", 21, "vertices along each side", 2, 4000, true},
+                          {"side", 1, "m", 0, 1e6},
+                          {"mass", 0.2, "total, kg", 0, 1e6},
+                          {"shear", 0.1, "spring stiffness on both diagonals of each quad, N/m",
+                           zero_too, 1e9},
+                          turns_info,
+                          duration_info()},
+           .build = build_net,
+           .counts = count_square,
+           .exact = turned_start<build_net, 1>},
+          {.name = "baton",
+           .summary = "a straight chain that spins about its middle, free and without weight: its "
+                      "motion is known",
+           .parameters = row_parameters({"n", 21, "vertices", 2, 10'000'000, true}, {turns_info}),
+           .build = build_baton,
+           .counts = count_row,
+           .exact = turned_start<build_baton, 2>,
+           .like = "chain"},
+          {.name = "hoop",
+           .summary = "a closed chain that spins as a regular polygon, free and without weight: "
+                      "its motion is known",
+           .parameters = {{"n", 40, "vertices", 3, 10'000'000, true},
+                          {"radius", 0.5, "m", 0, 1e6},
+                          {"mass", 1, "total, kg", 0, 1e6},
+                          turns_info,
+                          duration_info()},
+           .build = build_hoop,
+           .counts = [](const SceneParameters& p) { return std::pair(whole(p), whole(p)); },
+           .exact = turned_start<build_hoop, 2>,
+           .like = "chain"}};
 }
 
 }  // namespace harness

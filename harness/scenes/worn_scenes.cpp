@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 
 #include "harness/scenes/cloth_mesh.h"
 #include "solvers/problem/triangle_collider.h"
@@ -29,14 +28,13 @@ inextensible::TriangleMesh lathed(const std::vector<Ring>& rings, int segments) 
     return 2 + (ring - 1) * segments + segment % segments;
   };
   mesh.vertices = {{0, rings.front().y, 0}, {0, rings.back().y, 0}};
-  for (int r = 1; r < last; ++r) {
+  for (int r = 1; r < last; ++r)
     for (int s = 0; s < segments; ++s) {
       const double angle = 2 * pi * s / segments;
       mesh.vertices.emplace_back(rings[r].radius * std::cos(angle), rings[r].y,
                                  rings[r].radius * std::sin(angle));
     }
-  }
-  for (int r = 0; r < last; ++r) {
+  for (int r = 0; r < last; ++r)
     for (int s = 0; s < segments; ++s) {
       const int a = vertex(r, s), b = vertex(r, s + 1), c = vertex(r + 1, s + 1),
                 d = vertex(r + 1, s);
@@ -47,7 +45,6 @@ inextensible::TriangleMesh lathed(const std::vector<Ring>& rings, int segments) 
       mesh.triangles.push_back({a, d, b});
       if (r + 1 < last) mesh.triangles.push_back({b, d, c});
     }
-  }
   return mesh;
 }
 
@@ -235,9 +232,8 @@ std::vector<SceneType> worn_scenes() {
        .counts = [](const SceneParameters& p) { return count_cloth(skirt(p)); },
        .like = "drape"},
       {.name = "cape",
-       .summary =
-           "a cape, pinned to a body along a short part of its collar; the body walks and turns "
-           "(after Figure 8)",
+       .summary = "a cape, pinned to a body along a short part of its collar; the body walks and "
+                  "turns (after Figure 8)",
        .parameters = with_cloth_parameters(
            {{"n", 41, "vertices across", 3, 4000, true},
             {"length", 0.7, "of the cape, m", 0, 1e3},

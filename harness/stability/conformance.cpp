@@ -1,11 +1,8 @@
 #include "harness/stability/conformance.h"
 
 #include "harness/base/child_process.h"
-#include "harness/base/text.h"
 #include "harness/scenes/pendulum.h"
-#include "harness/stability/cases.h"
 #include "harness/stability/stability.h"
-#include "solvers/problem/forces.h"
 
 namespace harness {
 
@@ -183,19 +180,19 @@ Findings ordinary_runs(const Examinee& solver) {
              pins.empty() ? text("none moved in ", all.steps, " steps") : pins,
              "a pinned vertex's inverse mass is 0; do not write to it, rounding moves it too"),
       keeps_a_limit(solver.backend)
-          ? judged(limit.empty(), "limit",
-                   text("largest strain ", worst, " of the limit (allowed 1)"),
-                   limit + ": return ok only where every edge keeps | |d| / l - 1 | <= "
-                           "strain_limit (EdgeConstraints::permissible), before the collision "
-                           "filter; refuse otherwise")
+          ? judged(
+                limit.empty(), "limit", text("largest strain ", worst, " of the limit (allowed 1)"),
+                limit +
+                    ": return ok only where every edge keeps | |d| / l - 1 | <= strain_limit "
+                    "(EdgeConstraints::permissible), before the collision filter; refuse otherwise")
           : not_applicable("limit", text(solver.backend.strain_control == StrainControl::stiffness
                                              ? "no limit of its own, sweeps search its stiffness"
                                              : "promises no limit",
                                          "; here ", worst, " of it")),
       judged(counters.empty(), "counters",
              counters.empty() ? "steps are counted and no counter falls" : counters,
-             "only add to the WorkCounters that apply() is given, and return the iterations "
-             "of this step alone")};
+             "only add to the WorkCounters that apply() is given, and return the iterations of "
+             "this step alone")};
 }
 
 // ---- Linear and angular momentum of a free, weightless net ----
@@ -255,13 +252,13 @@ Findings momentum(const Examinee& solver) {
   return {
       judged(!all.broken.contains(Promise::momentum), linear,
              text("changes by ", all.momentum_defect, " of what flows in a step (allowed 1e-9)"),
-             "nothing outside acts: corrections of an edge's two ends, times their masses, "
-             "must cancel (share by inverse mass)"),
+             "nothing outside acts: corrections of an edge's two ends, times their masses, must "
+             "cancel (share by inverse mass)"),
       judged(fine <= allowed, angular,
              text("changes by ", coarse, " of its scale at h, ", fine, " at h/4 (allowed ", allowed,
                   ": it vanishes with the step)"),
-             "corrections must act along their edge, at its direction within the step; about "
-             "the origin or along fixed axes they exert a torque")};
+             "corrections must act along their edge, at its direction within the step; about the "
+             "origin or along fixed axes they exert a torque")};
 }
 
 // Steps that no method can take.
@@ -302,15 +299,15 @@ Findings refusal(const Examinee& solver) {
       wrong = c.name + ": refused without a reason in StepResult::detail";
     else if (!same_bits(later, fresh))
       wrong = c.name +
-              ": after the refused step the next one is not that of a new object; what a "
-              "step remembers for the next one it must forget when it is refused";
+              ": after the refused step the next one is not that of a new object; what a step "
+              "remembers for the next one it must forget when it is refused";
   }
-  return {judged(wrong.empty(), "refusal",
-                 text(refused, " impossible steps refused, ", accepted,
-                      " taken with finite positions; state bit for bit as it was, and nothing "
-                      "remembered: ",
-                      wrong.empty() ? "yes" : "no, or not refused"),
-                 wrong)};
+  return {judged(
+      wrong.empty(), "refusal",
+      text(refused, " impossible steps refused, ", accepted,
+           " taken with finite positions; state bit for bit as it was, and nothing remembered: ",
+           wrong.empty() ? "yes" : "no, or not refused"),
+      wrong)};
 }
 
 // A candidate that keeps the limit already.
@@ -376,8 +373,8 @@ Findings determinism(const Examinee& solver) {
       difference.empty(), "determinism",
       text(steps, " steps repeated beside another instance: ",
            difference.empty() ? "the same bits and counters" : difference),
-      "one seed, one result: no static or global state, no clock, no std::rand, no memory that "
-      "was not initialized, no order of addresses; random numbers from BackendOptions::seed")};
+      "one seed, one result: no static or global state, no clock, no std::rand, no memory that was "
+      "not initialized, no order of addresses; random numbers from BackendOptions::seed")};
 }
 
 // Tolerance of errors of fine runs, h = 0.00025 s, over the scene's size: five times g t h / 2, by
@@ -424,10 +421,9 @@ Findings consistency(const Examinee& solver) {
     measured +=
         text(", and that is ", error, " from the exact motion (allowed ", largest_error, ")");
   }
-  return {judged(
-      passed, check, measured,
-      "what a step changes must vanish with h: look for damping, relaxation or an offset per "
-      "step that does not depend on h")};
+  return {judged(passed, check, measured,
+                 "what a step changes must vanish with h: look for damping, relaxation or an "
+                 "offset per step that does not depend on h")};
 }
 
 // A chain that whirls about the vertical like a rigid curve.
@@ -454,8 +450,8 @@ Findings motion_in_space(const Examinee& solver) {
       std::max({error, std::abs(energy), std::abs(spin)}) <= largest_error, check,
       text("a whirling chain is ", error, " from its place; its energy changes by ", energy,
            ", its angular momentum about the vertical by ", spin, " (allowed ", largest_error, ")"),
-      "a pin exerts no torque about itself, and weight none about the vertical: look "
-      "for what treats directions differently, or damps by the step")};
+      "a pin exerts no torque about itself, and weight none about the vertical: look for what "
+      "treats directions differently, or damps by the step")};
 }
 
 // Every hard case of the profile "quick".

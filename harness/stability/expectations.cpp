@@ -1,5 +1,4 @@
 // How hard cases should end, and where methods are known to end otherwise: configs/hard_cases.json.
-
 #include "harness/base/files.h"
 #include "harness/points/schema.h"
 #include "harness/stability/hard_case.h"
@@ -50,7 +49,7 @@ bool Expectation::about(const Backend& backend) const {
 }
 
 void add_expectations(std::vector<HardCase>& cases) {
-  for (HardCase& c : cases) {
+  for (HardCase& c : cases)
     for (const json& entry : entries_about(c)) {
       if (c.value <= entry.value("above", -HUGE_VAL) || c.value >= entry.value("below", HUGE_VAL))
         continue;
@@ -62,7 +61,6 @@ void add_expectations(std::vector<HardCase>& cases) {
       expected.why = entry.at("why");
       if (entry.contains("or")) expected.other = {entry.at("or"), entry.at("because")};
     }
-  }
 }
 
 Expectation HardCase::expectation(const std::string& solver) const {

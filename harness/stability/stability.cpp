@@ -2,10 +2,7 @@
 
 #include <Eigen/SPQRSupport>
 
-#include "harness/base/text.h"
 #include "harness/points/schema.h"
-#include "harness/stability/cases.h"
-#include "solvers/problem/forces.h"
 
 namespace harness {
 
@@ -74,7 +71,7 @@ StabilityOutcome run_stability(const StabilityPlan& plan, std::uint64_t seed,
     if (events.interrupted()) throw Interrupted();
   };
   try {
-    for (const HardCase& c : plan.cases) {
+    for (const HardCase& c : plan.cases)
       for (const std::string& solver : plan.solvers) {
         stop_if_asked();
         const std::string key = cell_key(c.name, solver);
@@ -87,18 +84,15 @@ StabilityOutcome run_stability(const StabilityPlan& plan, std::uint64_t seed,
         outcome.cells.push_back(std::move(cell));
         events.done(key, outcome.cells.size(), plan.cells());
       }
-    }
-    for (const StabilityScene& scene : plan.scenes) {
+    for (const StabilityScene& scene : plan.scenes)
       for (const std::string& solver : plan.solvers) {
         stop_if_asked();
         outcome.largest_steps.push_back(largest_step(scene, solver, seed, events.interrupted));
         events.done("largest step, " + cell_key(scene.name, solver), 0, 0);
       }
-    }
-    if (plan.freedom) {
+    if (plan.freedom)
       for (const int n : {11, 21, 41})
         for (const Freedom& f : degrees_of_freedom(n)) outcome.freedom.push_back(f);
-    }
     for (const SameFrameScene& scene : plan.frames) {
       stop_if_asked();
       outcome.same_frames.push_back(same_frame(scene, seed));

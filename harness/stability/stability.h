@@ -3,7 +3,6 @@
 #pragma once
 
 #include "harness/base/journal.h"
-#include "harness/base/text.h"
 #include "harness/judge/reference.h"
 #include "harness/stability/hard_case.h"
 

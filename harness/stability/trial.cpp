@@ -1,9 +1,7 @@
 #include "harness/stability/trial.h"
 
 #include "harness/base/child_process.h"
-#include "harness/base/text.h"
 #include "harness/points/point_json.h"
-#include "solvers/problem/forces.h"
 
 namespace harness {
 

@@ -1,6 +1,5 @@
 #include <iterator>
 
-#include "harness/base/text.h"
 #include "harness/claims/claims.h"
 #include "harness/tables/tables.h"
 
@@ -80,15 +79,14 @@ void print_planes(std::ostream& out, const std::vector<Plane>& planes) {
          {Rival::first_as_published, Rival::rival_in_stepper, Rival::paper_in_any_stepper})
       answers.rows.back().push_back(lead_text(cell, which));
   }
-  print_table(out,
-              "## Who is fastest\n\nIn each cell the fastest: its time for one simulated second "
-              "and its step in s; then how many times as long the best of the paper's six takes, "
-              "if it is not of them. Bold: faster than each other one beyond the noise. `u`: with "
-              "settings other than its tuned ones. Errors are over the scene's size, up to the "
-              "time to which the "
-              "references agree. The last three columns say where the lead comes from, in times "
-              "the leader's time",
-              answers);
+  print_table(
+      out,
+      "## Who is fastest\n\nIn each cell the fastest: its time for one simulated second and its "
+      "step in s; then how many times as long the best of the paper's six takes, if it is not of "
+      "them. Bold: faster than each other one beyond the noise. `u`: with settings other than its "
+      "tuned ones. Errors are over the scene's size, up to the time to which the references agree. "
+      "The last three columns say where the lead comes from, in times the leader's time",
+      answers);
   out << "### Fastest within each strain and error\n\n";
   print_markdown(out, grid);
   out << '\n';
@@ -135,12 +133,12 @@ void print_sags(std::ostream& out, const NamedResult& result) {
             sags + " (" + plain(p.measures().rest_speed, 2) + ")";
       }
     }
-    print_table(out,
-                "## Sag of " + scene_words(scene) + " (`" + result.name + "`)\n\nHow far " + marks +
-                    " hang below where they would if nothing stretched, mean over the last third "
-                    "of the run, each solver at its best step; in brackets how fast the cloth "
-                    "still moves",
-                table);
+    print_table(
+        out,
+        "## Sag of " + scene_words(scene) + " (`" + result.name + "`)\n\nHow far " + marks +
+            " hang below where they would if nothing stretched, mean over the last third of the "
+            "run, each solver at its best step; in brackets how fast the cloth still moves",
+        table);
   }
 }
 
@@ -186,8 +184,8 @@ void print_hard_cases(std::ostream& out, const NamedResult& result) {
   const json& counts = result.document.at("counts");
   print_table(out,
               "## Hard cases (`" + result.name +
-                  "`)\n\nHow many small scenes that are known to break solvers end in which way "
-                  "by each solver; [measuring.md](measuring.md#hard-cases) explains them. Of " +
+                  "`)\n\nHow many small scenes that are known to break solvers end in which way by "
+                  "each solver; [measuring.md](measuring.md#hard-cases) explains them. Of " +
                   counts.at("cells").dump() + " cells, " + counts.at("strict").dump() +
                   " have one expected outcome, " + counts.at("two_admitted").dump() +
                   " admit two where theory cannot decide. Not as expected: " +

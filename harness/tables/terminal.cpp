@@ -1,5 +1,3 @@
-
-#include "harness/base/text.h"
 #include "harness/tables/tables.h"
 
 namespace harness {
@@ -124,26 +122,6 @@ void print_failures(std::ostream& out, const Runs& runs, bool all) {
   for (const auto& [name, count] : of_contestants) out << "  " << name << " x " << count << '\n';
 }
 
-// Plug-in solvers, their versions, and the share of time that copying states takes.
-void print_plugins(std::ostream& out, const Runs& runs, const json& plugins) {
-  if (!plugins.empty()) out << '\n';
-  for (const auto& plugin : plugins) {
-    for (const auto& solver : plugin.at("solvers")) {
-      double copy = 0, all = 0;  // s
-      for (const Point& point : runs.points) {
-        if (point.spec().solver != solver || !point.ok()) continue;
-        const auto& phases = point.result().phases;
-        copy += phases.copy;
-        all += phases.unconstrained + phases.filter + phases.collision + phases.copy;
-      }
-      out << "plug-in " << solver.get<std::string>() << ": "
-          << plugin.at("version").get<std::string>();
-      if (copy > 0) out << "; copying its state takes " << percent(copy / all) << " of its time";
-      out << '\n';
-    }
-  }
-}
-
 void print_noise(std::ostream& out, const json& document) {
   const json& context = document.at("context");
   if (const auto pair = noise_of(context))
@@ -195,8 +173,7 @@ void print_sweep(std::ostream& out, const json& document, const std::string& fil
   const auto planes = planes_of(runs);
   print_grid(out, planes);
   out << "(~: too close to the next, or too few samples, to tell; u: with settings other than its "
-         "tuned ones; errors "
-         "are over the scene's size)\n";
+         "tuned ones; errors are over the scene's size)\n";
   for (const Plane& plane : planes)
     if (all) print_everybody(out, plane);
   for (const Finding& finding : findings_of(planes)) {
@@ -204,7 +181,9 @@ void print_sweep(std::ostream& out, const json& document, const std::string& fil
     for (const std::string& sentence : finding.sentences) out << sentence << '\n';
   }
   print_failures(out, runs, all);
-  print_plugins(out, runs, document.at("context").value("plugins", json::array()));
+  for (const json& plugin : document.at("context").value("plugins", json::array()))
+    for (const std::string solver : plugin.at("solvers"))
+      out << "\nplug-in " << solver << ": " << plugin.at("version").get<std::string>() << '\n';
   print_noise(out, document);
   if (const std::string words = text(coverage_of(runs)); !words.empty())
     out << '\n' << words << '\n';

@@ -7,8 +7,7 @@ namespace inextensible {
 namespace {
 
 // For a problem without constraints or free vertices: not all libraries accept empty matrices.
-class NoEquations : public SpdSolver {
- public:
+struct NoEquations : SpdSolver {
   bool factor() override { return true; }
   void solve(double* /*rhs*/) override {}
   double factor_nonzeros() const override { return 0; }

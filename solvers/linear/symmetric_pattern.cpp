@@ -45,11 +45,10 @@ SymmetricPattern pattern_of(int n, const Pairs& pairs, Triangle triangle) {
 
 SymmetricPattern in_blocks(const SymmetricPattern& pattern, int size) {
   Pairs pairs;
-  for (int j = 0; j < pattern.n; ++j) {
+  for (int j = 0; j < pattern.n; ++j)
     for (int e = pattern.column_start[j]; e < pattern.column_start[j + 1]; ++e)
       for (int k = 0; k < size * size; ++k)
         pairs.emplace_back(size * pattern.row_index[e] + k % size, size * j + k / size);
-  }
   return pattern_of(size * pattern.n, pairs, pattern.triangle);
 }
 

@@ -39,10 +39,9 @@ class TridiagonalSolver final : public SpdSolver {
  public:
   explicit TridiagonalSolver(const SymmetricPattern& pattern)
       : SpdSolver(pattern.entries()), n_(pattern.n), l_(n_), inverse_d_(n_) {
-    if (!pattern.chain(1) || pattern.triangle != SymmetricPattern::Triangle::upper) {
+    if (!pattern.chain(1) || pattern.triangle != SymmetricPattern::Triangle::upper)
       throw std::invalid_argument(
           "the linear solver 'tridiagonal' needs constraints that form one chain in order");
-    }
   }
 
   bool factor() override {
@@ -184,10 +183,9 @@ class BlockTridiagonalSolver final : public SpdSolver {
  public:
   explicit BlockTridiagonalSolver(const SymmetricPattern& pattern)
       : SpdSolver(pattern.entries()), rows_(pattern.n / 3) {
-    if (!pattern.chain(3) || pattern.triangle != SymmetricPattern::Triangle::upper) {
+    if (!pattern.chain(3) || pattern.triangle != SymmetricPattern::Triangle::upper)
       throw std::invalid_argument(
           "the linear solver 'block_tridiagonal' needs vertices that form one chain in order");
-    }
   }
 
   bool factor() override {

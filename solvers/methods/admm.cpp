@@ -15,9 +15,6 @@
 // With contact inside, a vertex that touches is one more term, z_v = x_v within its half-space, and
 // the others pull towards where they are, so that the matrix stays. Loops: three solves, one pass
 // over edges, an iteration.
-#include <algorithm>
-#include <cmath>
-
 #include "solvers/methods/rows.h"
 #include "solvers/systems/constraint_system.h"
 #include "solvers/systems/vertex_matrix.h"
@@ -48,10 +45,9 @@ class Admm final : public VelocityFilter {
         longest_(1 + options.number("target") * options.strain_limit),
         matrix_(problem, ends_of(problem), "auto", 1),
         target_(3, problem.vertices()) {
-    for (const auto [a, b] : problem.edges()) {
+    for (const auto [a, b] : problem.edges())
       weight_.push_back(options.number("penalty") /
                         (problem.inverse_mass()[a] + problem.inverse_mass()[b]));
-    }
     rhs_.setZero(4, static_cast<Eigen::Index>(matrix_.vertex.size()));
     if (problem.contact_inside()) anchor_.resize(3, problem.vertices());
     z_.resize(3, problem.constraints());

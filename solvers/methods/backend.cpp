@@ -48,17 +48,15 @@ bool Range::contains(double number) const {
 
 Settings complete_settings(const Backend& backend, const Settings& given) {
   Settings all;
-  for (const SettingInfo& info : backend.settings) {
+  for (const SettingInfo& info : backend.settings)
     std::visit([&](auto initial) { all[info.name] = initial; }, info.initial);
-  }
   for (const auto& [name, value] : given) {
     const auto info = std::ranges::find(backend.settings, name, &SettingInfo::name);
     const std::string fault =
         info == backend.settings.end() ? " does not exist" : fault_of(*info, value);
-    if (!fault.empty()) {
+    if (!fault.empty())
       throw std::invalid_argument("solver '" + std::string(backend.name) + "': setting '" + name +
                                   "'" + fault);
-    }
     all[name] = value;
   }
   return all;

@@ -32,11 +32,10 @@ class DenseNewton final : public VelocityFilter {
  public:
   DenseNewton(const Problem& problem, const BackendOptions& /*options*/)
       : problem_(problem), edges_(problem, tolerance) {
-    if (problem.vertices() > largest_problem) {
+    if (problem.vertices() > largest_problem)
       throw std::invalid_argument("solver 'dense_newton' is dense, for at most " +
                                   std::to_string(largest_problem) + " vertices; this problem has " +
                                   std::to_string(problem.vertices()));
-    }
   }
 
   StepResult apply(const Positions& /*x_start*/, double /*h*/, Iterate iterate,

@@ -16,9 +16,6 @@
 // A factorization in single precision solves (7) to a residual of a fraction of |C(x_j)|, the
 // forcing term of an inexact Newton method: first_forcing, then as |C| has fallen, squared
 // (Eisenstat and Walker 1996, choice 2), which keeps the convergence of order two.
-#include <algorithm>
-#include <limits>
-
 #include "solvers/methods/rows.h"
 #include "solvers/methods/strain_passes.h"
 
@@ -52,11 +49,10 @@ class FastProjection final : public VelocityFilter {
         u_start_(3, along == Along::middle ? problem.constraints() : 0),
         mu_(problem.constraints()),
         excess_(problem.constraints()) {
-    if ((smoothing_sweeps_ > 0 || sweeps_before_ > 0) && !system_.chain()) {
+    if ((smoothing_sweeps_ > 0 || sweeps_before_ > 0) && !system_.chain())
       passes_ = std::make_unique<StrainPasses>(
           StrainPasses::by_mass(problem, {options.strain_limit, options.number("smoothing_target")},
                                 options.number("smoothing_relaxation")));
-    }
   }
 
   StepResult apply(const Positions& x_start, double /*h*/, Iterate x, WorkCounters& work) override {
@@ -162,10 +158,9 @@ class FastProjection final : public VelocityFilter {
         damping *= 10;
         mu_ = excess_;
       }
-      if (!(damping < largest_damping)) {
+      if (!(damping < largest_damping))
         return refuse(Status::not_converged, j, edges, x,
                       "no damped projection lowers the constraint error");
-      }
       const double predicted_error = damped_prediction(damping);
       correct(x);
       if (observer_) show(j + 1, x);
@@ -235,8 +230,8 @@ Backend fast_projection_row() {
                        {"smoothing_relaxation", 1.4, "times a pass's correction", relaxation_range,
                         tunable_relaxation, departs},
                        {"first_forcing", 1e-2,
-                        "residual of a step's first linear solve in mixed precision, of the "
-                        " right-hand side; those of later ones are smaller",
+                        "residual of a step's first linear solve in mixed precision, of the  "
+                        "right-hand side; those of later ones are smaller",
                         Range{1e-8, 1}, tunable_forcing},
                        schur_solver()},
           .make_filter = make_filter<FastProjection>,

@@ -12,9 +12,6 @@
 // forces; if that fails, once more from zero, whose first iteration is fast projection's. The
 // linear system is solved to a few percent by projected conjugate gradients, or factored. Loops:
 // one assembly, one factorization, several solves and one or more evaluations an iteration.
-#include <algorithm>
-#include <cmath>
-
 #include "solvers/methods/rows.h"
 #include "solvers/systems/constraint_system.h"
 #include "solvers/systems/kkt_system.h"
@@ -146,10 +143,9 @@ class Icd final : public VelocityFilter {
   StepResult apply(const Positions& /*x_start*/, double h, Iterate x, WorkCounters& work) override {
     // dx = 0 and lambda = 0 solve both equations as far as is asked.
     if (min_iterations_ == 0 && edges_.permissible(x)) return {Status::ok, 0};
-    if (x.contact_count() > 0 && !kkt_->takes_contacts()) {
+    if (x.contact_count() > 0 && !kkt_->takes_contacts())
       return refuse(Status::not_converged, 0, edges_, x,
                     "this linear solver cannot hold contacts, projected_cg can");
-    }
     active_.begin(x);
     active_.write_candidate(x);
     x0_ = x;
@@ -157,10 +153,9 @@ class Icd final : public VelocityFilter {
       StepResult result = closest(h, x, work);
       result.iterations = iterations += result.iterations;
       if (!result || !active_.update(x)) return result;
-      if (round == most_rounds) {
+      if (round == most_rounds)
         return refuse(Status::not_converged, iterations, edges_, x,
                       "the set of contacts that hold keeps changing");
-      }
       active_.write_candidate(x0_);
       active_.hold(x);
     }
@@ -256,10 +251,9 @@ class Icd final : public VelocityFilter {
         evaluate(dx_);
         if (solved)
           return accept();  // rounding stops iterations that only min_iterations asked for
-        if (was_convex || !direction(x.contacts(), true, work) || !line_search(work)) {
+        if (was_convex || !direction(x.contacts(), true, work) || !line_search(work))
           return refuse(Status::not_converged, j, edges_, trial_,
                         "no step along Newton's direction makes progress");
-        }
       }
       dx_.swap(trial_dx_);
       mu_.swap(trial_mu_);

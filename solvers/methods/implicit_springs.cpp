@@ -10,10 +10,6 @@
 // order. (2) Tensions in the matrix are predicted. (3) Near the end a factorization is kept for
 // further iterations while these shrink. Loops: one assembly, factorization and solve, and one or
 // more energy evaluations, an iteration.
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include "solvers/methods/rows.h"
 #include "solvers/methods/spring_energy.h"
 
@@ -94,10 +90,9 @@ class ImplicitSprings final : public Stepper {
     double scale = 1;
     for (int halvings = 0;; ++halvings) {
       trial_ = x;
-      for (std::size_t f = 0; f < energy_.matrix().vertex.size(); ++f) {
+      for (std::size_t f = 0; f < energy_.matrix().vertex.size(); ++f)
         trial_.col(energy_.matrix().vertex[f]) +=
             scale * step_.segment<3>(static_cast<Eigen::Index>(3 * f));
-      }
       const double next = energy_.value(trial_);
       count_evaluations();
       // Near the minimum the decrease drowns in rounding: a step below the tolerance is taken.
@@ -166,10 +161,9 @@ class ImplicitSprings final : public Stepper {
         count_evaluations();
       } else {
         ++work_.assemblies;
-        if (!factor_counted(*energy_.matrix().solver, work_)) {
+        if (!factor_counted(*energy_.matrix().solver, work_))
           return {std::isfinite(current) ? Status::singular : Status::not_finite, j, -1, 0,
                   "the Newton matrix is singular"};
-        }
       }
       step_ = -energy_.gradient();
       energy_.matrix().solver->solve(
@@ -186,10 +180,9 @@ class ImplicitSprings final : public Stepper {
         reuse = false;
         continue;
       }
-      if (found == Search::failed) {
+      if (found == Search::failed)
         return {Status::not_converged, j, -1, 0,
                 "no step along Newton's direction lowers the energy"};
-      }
       energy_.predict_tension(x, trial_);
       count_evaluations();
       x.swap(trial_);
@@ -237,18 +230,18 @@ Backend implicit_springs_row() {
       .name = "implicit_springs",
       .summary = "stiff springs, by Newton with line search",
       .strain_control = StrainControl::stiffness,
-      .settings =
-          {{"stiffness", 1e4, "spring stiffness EA in N; sweeps search it", positive},
-           iteration_limit(300, "Newton iterations a step before it is refused"),
-           {"newton_tolerance", 0.1, "last Newton step, in strain limit times shortest rest length",
-            positive, SearchRange{0.01, 10}},
-           // Instructions at 1 % strain and 1/100 s, plain Newton = 1, on the chain of 80 and the
-           // drape of 21 x 21: 0.66 and 0.77 without reuse, 0.59 and 0.55 with 10. A reuse of 30
-           // takes 0.55 and 0.53 but ends steps less exactly on the chain.
-           {"reuse", 10.0,
-            "a Newton step below this many tolerances keeps its factorization for the next; 0: "
-            "never",
-            Range{}, SearchRange{0, 100}}},
+      .settings = {{"stiffness", 1e4, "spring stiffness EA in N; sweeps search it", positive},
+                   iteration_limit(300, "Newton iterations a step before it is refused"),
+                   {"newton_tolerance", 0.1,
+                    "last Newton step, in strain limit times shortest rest length", positive,
+                    SearchRange{0.01, 10}},
+                   // Instructions at 1 % strain and 1/100 s, plain Newton = 1, on the chain of 80
+                   // and the drape of 21 x 21: 0.66 and 0.77 without reuse, 0.59 and 0.55 with 10.
+                   // A reuse of 30 takes 0.55 and 0.53 but ends steps less exactly on the chain.
+                   {"reuse", 10.0,
+                    "a Newton step below this many tolerances keeps its factorization for the "
+                    "next; 0: never",
+                    Range{}, SearchRange{0, 100}}},
       .make = make_step<ImplicitSprings>,
       .direction = Direction::springs,
       .citation = "Baraff and Witkin 1998",

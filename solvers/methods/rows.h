@@ -44,10 +44,10 @@ inline SettingInfo iteration_limit(double initial, const char* what) {
 }
 
 inline SettingInfo least_iterations(double initial = 0) {
-  return {"min_iterations", initial,
-          "projections a step even where the candidate is permissible; 1 keeps slack from building "
-          "up",
-          count_from_zero, SearchRange{0, 2}};
+  return {
+      "min_iterations", initial,
+      "projections a step even where the candidate is permissible; 1 keeps slack from building up",
+      count_from_zero, SearchRange{0, 2}};
 }
 
 constexpr const char* pass_target =
@@ -56,10 +56,10 @@ constexpr const char* pass_target =
 // The target of methods that solve for all edges at once: below 1, or they would only approach the
 // limit.
 inline SettingInfo projection_target() {
-  return {"target", 0.0,
-          "strained edges are brought to this fraction of the strain limit, those below it are "
-          "kept",
-          Range{0, 0.99}, SearchRange{0, 0.9}};
+  return {
+      "target", 0.0,
+      "strained edges are brought to this fraction of the strain limit, those below it are kept",
+      Range{0, 0.99}, SearchRange{0, 0.9}};
 }
 
 inline SettingInfo word_setting(const char* name, const char* initial, const char* meaning,
@@ -69,9 +69,8 @@ inline SettingInfo word_setting(const char* name, const char* initial, const cha
 
 inline SettingInfo schur_solver() {
   std::vector<const char*> names{"auto"};
-  for (const SpdSolverRow& row : spd_solvers()) {
+  for (const SpdSolverRow& row : spd_solvers())
     if (row.takes != Takes::block_tridiagonal) names.push_back(row.name);
-  }
   return word_setting("linear_solver", "auto", "factorization of J W J^T", std::move(names));
 }
 

@@ -11,9 +11,6 @@
 // The equations have spurious solutions far away; the closest point of the manifold is at most
 // twice as far from x^n (on it) as x0 is, so what is farther, allowing for slack, is refused.
 // Loops: one assembly and factorization a step, one solve and two passes over edges an iteration.
-#include <cmath>
-#include <limits>
-
 #include "solvers/methods/rows.h"
 #include "solvers/problem/forces.h"
 #include "solvers/systems/constraint_system.h"
@@ -62,17 +59,15 @@ class Shake final : public VelocityFilter {
       if (j == 0) {
         reach = edges.permissible(x_start) ? 2 * distance(x_start, x) + slack_
                                            : std::numeric_limits<double>::infinity();
-        if (!factor_start(x_start, x.contacts(), work)) {
+        if (!factor_start(x_start, x.contacts(), work))
           return refuse(Status::singular, j, edges, x,
                         "J W J^T at the start of the step is not positive definite");
-        }
       } else if (error < 0.5 * least_error) {
         if (matrix == Matrix::here) matrix = Matrix::kept;
       } else if (matrix == Matrix::here && !(error < least_error)) {  // no decrease: half the step
-        if (mu_.norm() < shortest_step * full_step) {
+        if (mu_.norm() < shortest_step * full_step)
           return refuse(Status::not_converged, j, edges, x,
                         "no step along J(x^n) lowers the constraint error");
-        }
         ++work.line_search_steps;
         mu_ *= 0.5;
         x.restore(best_);
@@ -101,10 +96,9 @@ class Shake final : public VelocityFilter {
   StepResult project_velocity(const Positions& x, const Contacts* contacts, Positions& v,
                               WorkCounters& work) {
     const EdgeConstraints& edges = system_.edges();
-    if (!factor_start(x, contacts, work)) {
+    if (!factor_start(x, contacts, work))
       return refuse(Status::singular, 0, edges, x,
                     "J W J^T at the end of the step is not positive definite");
-    }
     x_factored_ = x;
     factored_ = !contacts;  // which will be others in the next step
     if (contacts) contacts->keep_on_planes(x, v);

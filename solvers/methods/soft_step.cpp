@@ -11,7 +11,6 @@
 // Departures: n_k is that of the end in the second stage; the frequency is bounded by the step, not
 // by 60 Hz. At rest the first stage leaves C_k = load / (m_k omega^2). Loops: two passes over
 // edges, in the mesh's order.
-#include <cmath>
 #include <numbers>
 
 #include "solvers/methods/rows.h"
@@ -46,7 +45,7 @@ class SoftStep final : public Stepper {
     directions(start_positions());
     impulse_ = h * h * last_force_;
     for (int k = 0; k < edges_.count(); ++k) pull(k, impulse_[k], x);
-    for (int pass = 0; pass < passes_; ++pass) {
+    for (int pass = 0; pass < passes_; ++pass)
       for (int k = 0; k < edges_.count(); ++k) {
         const double way = n_.col(k).dot(x.col(edges_.b[k]) - x.col(edges_.a[k])) - length_[k];
         const double mass = 1 / (edges_.wa[k] + edges_.wb[k]);
@@ -56,7 +55,6 @@ class SoftStep final : public Stepper {
         impulse_[k] += change;
         pull(k, change, x);
       }
-    }
     work_.edge_projections += std::int64_t{passes_} * edges_.count();
     phases_.filter += stopwatch();
     return {Status::ok, passes_};
@@ -66,14 +64,13 @@ class SoftStep final : public Stepper {
                             Positions& v) override {
     v = (x - start.x) * (1 / h);
     directions(x);
-    for (int pass = 0; pass < passes_; ++pass) {
+    for (int pass = 0; pass < passes_; ++pass)
       for (int k = 0; k < edges_.count(); ++k) {
         const double rate = n_.col(k).dot(v.col(edges_.b[k]) - v.col(edges_.a[k]));
         const double change = -rate / (edges_.wa[k] + edges_.wb[k]);
         impulse_[k] += h * change;
         pull(k, change, v);
       }
-    }
     work_.edge_projections += std::int64_t{passes_} * edges_.count();
     if (std::isfinite(v.sum())) last_force_ = impulse_ / (h * h);
     return {};

@@ -11,14 +11,11 @@ constexpr double stiff_normal = 1e6;
 Pairs coupled_vertices(const Problem& problem) {
   Pairs pairs;
   for (const auto [a, b] : problem.edges()) pairs.emplace_back(a, b);
-  if (const Springs* shear = problem.shear()) {
+  if (const Springs* shear = problem.shear())
     for (const auto [a, b] : shear->edges) pairs.emplace_back(a, b);
-  }
-  for (const BendingStencil& s : problem.bending()) {
-    for (std::size_t i = 0; i < 4; ++i) {
+  for (const BendingStencil& s : problem.bending())
+    for (std::size_t i = 0; i < 4; ++i)
       for (std::size_t j = 0; j < i; ++j) pairs.emplace_back(s.vertex[i], s.vertex[j]);
-    }
-  }
   return pairs;
 }
 
@@ -48,10 +45,9 @@ SpringEnergy::SpringEnergy(const Problem& problem, double stiffness)
   };
   for (std::size_t k = 0; k < problem.edges().size(); ++k)
     add(problem.edges()[k], problem.rest_length()[k], stiffness / problem.rest_length()[k]);
-  if (const Springs* shear = problem.shear()) {
+  if (const Springs* shear = problem.shear())
     for (std::size_t k = 0; k < shear->edges.size(); ++k)
       add(shear->edges[k], shear->rest_length[k], shear->stiffness[k]);
-  }
   for (const BendingStencil& s : problem.bending()) {
     Hinge hinge{};
     for (std::size_t i = 0, pair = 0; i < 4; ++i) {

@@ -42,9 +42,8 @@ class GaussSeidel final : public VelocityFilter {
   StepResult apply(const Positions& x_start, double /*h*/, Iterate x, WorkCounters& work) override {
     for (int passes = 0;; ++passes) {
       if (edges_.permissible(x)) return {Status::ok, passes};
-      if (passes == max_iterations_ || (passes % 64 == 63 && !x.positions().allFinite())) {
+      if (passes == max_iterations_ || (passes % 64 == 63 && !x.positions().allFinite()))
         return refuse(Status::not_converged, passes, edges_, x, "pass limit");
-      }
       shuffle();
       const std::int64_t projections =
           along_ == Along::middle

@@ -286,8 +286,7 @@ std::int64_t StrainPasses::pass(const ColoredEdges::Block& block, Displacements&
 
 template <bool middle, class Ends>
 [[gnu::always_inline]] inline void StrainPasses::measure(int k, const Ends& ends) {
-  using simd::where;
-  using std::experimental::static_simd_cast;
+  using simd::where, std::experimental::static_simd_cast;
   Group& group = groups_[k / width];
   const auto edge = [&](const Places& x, int axis) {
     const double* from = x.data() + axis * x.rows();
@@ -433,7 +432,7 @@ void PlacedContacts::measure(const ColoredEdges::Places& base) {
 void PlacedContacts::settle(ColoredEdges::Displacements& u) {
   using Some = Lanes<float, at_once>;
   float* const to[3] = {u.col(0).data(), u.col(1).data(), u.col(2).data()};
-  for (Block& block : blocks_) {
+  for (Block& block : blocks_)
     for (int first = 0; first < width; first += at_once) {
       const auto some = [first](const float* from) { return lanes<at_once>(from + first); };
       Some at[3], normal[3];
@@ -449,16 +448,14 @@ void PlacedContacts::settle(ColoredEdges::Displacements& u) {
       for (int axis = 0; axis < 3; ++axis)
         (at[axis] + more * normal[axis]).copy_to(to[axis] + block.first + first, element_aligned);
     }
-  }
 }
 
 const ColoredEdges::Places& PlacedContacts::held_normals() {
   for (const Block& block : blocks_) {
     const auto holds = Eigen::Map<const Eigen::Array<float, width, 1>>(block.push) > 0;
-    for (int axis = 0; axis < 3; ++axis) {
+    for (int axis = 0; axis < 3; ++axis)
       held_.col(axis).segment<width>(block.first) =
           holds.select(normal_.col(axis).segment<width>(block.first), 0);
-    }
   }
   return held_;
 }

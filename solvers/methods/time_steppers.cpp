@@ -1,4 +1,3 @@
-
 #include "solvers/methods/backend.h"
 #include "solvers/problem/forces.h"
 #include "solvers/stepping/bdf2.h"
@@ -178,10 +177,9 @@ std::span<const TimeStepper> time_steppers() {
 
 const char* mismatch(const Backend& method, const TimeStepper& stepper) {
   if (std::string_view(method.stepper) == stepper.name) return nullptr;
-  if (!method.make_filter) {
+  if (!method.make_filter)
     return method.backward_euler && stepper.around == bdf2 ? nullptr
                                                            : "the method is a time step of its own";
-  }
   if (std::string_view(stepper.name) == "verlet")
     return "its forces act along the edges at the start of a step, the method's do not";
   if (method.direction == Direction::start)

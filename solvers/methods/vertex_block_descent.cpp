@@ -7,9 +7,6 @@
 // paper's Hessian is indefinite under compression. No line search, as in the paper. Momentum is
 // conserved only as far as the iteration has converged. A vertex in contact takes the minimum
 // within its plane. Loops: one over vertices a pass.
-#include <algorithm>
-#include <limits>
-
 #include "solvers/methods/rows.h"
 #include "solvers/methods/vertex_passes.h"
 #include "solvers/problem/forces.h"
@@ -70,9 +67,8 @@ class VertexBlockDescent final : public Stepper {
       if (!contacts) break;
       passes_.read_pushes(*contacts);
       if (contacts->find(x, work_) == 0) break;
-      if (round == most_contact_rounds) {
+      if (round == most_contact_rounds)
         return {Status::not_converged, result.iterations, -1, 0, "the contact set did not settle"};
-      }
     }
     phases_.unconstrained += stopwatch();
     return result;

@@ -26,14 +26,12 @@ struct VertexPasses::Ends {
       springs[a].push_back({b, all.stiffness[k], all.rest_length[k]});
       springs[b].push_back({a, all.stiffness[k], all.rest_length[k]});
     }
-    for (const BendingStencil& s : stencils) {
-      for (std::size_t i = 0; i < 4; ++i) {
+    for (const BendingStencil& s : stencils)
+      for (std::size_t i = 0; i < 4; ++i)
         for (std::size_t j = 0; j < 4; ++j) {
           const double entry = s.stiffness * s.coefficient[i] * s.coefficient[j];
           if (entry != 0 && s.vertex[i] != s.vertex[j]) bending[s.vertex[i]][s.vertex[j]] -= entry;
         }
-      }
-    }
     // The first color that no neighbour has: two colors on a woven net, four with shear springs.
     std::vector<char> taken;
     for (std::size_t v = 0; v < color.size(); ++v) {
@@ -70,7 +68,7 @@ VertexPasses::VertexPasses(const Problem& problem, const Springs& springs, const
       group.springs = std::max(group.springs, static_cast<int>(ends.springs[v].size()));
       group.pairs = std::max(group.pairs, static_cast<int>(ends.bending[v].size()));
     }
-    for (int s = 0; s < group.springs; ++s) {
+    for (int s = 0; s < group.springs; ++s)
       for (int i = group.place; i < group.place + width; ++i) {
         const int v = vertex_[i];
         const bool filler = v < 0 || s >= std::ssize(ends.springs[v]);
@@ -80,8 +78,7 @@ VertexPasses::VertexPasses(const Problem& problem, const Springs& springs, const
         rest_.push_back(spring.rest_length);
         entries_ += filler ? 0 : 1;
       }
-    }
-    for (int s = 0; s < group.pairs; ++s) {
+    for (int s = 0; s < group.pairs; ++s)
       for (int i = group.place; i < group.place + width; ++i) {
         const int v = vertex_[i];
         const bool filler = v < 0 || s >= std::ssize(ends.bending[v]);
@@ -90,7 +87,6 @@ VertexPasses::VertexPasses(const Problem& problem, const Springs& springs, const
         bend_.push_back(filler ? 0 : pair->second);
         entries_ += filler ? 0 : 1;
       }
-    }
   }
   tension_.setZero(static_cast<Eigen::Index>(other_.size()));
 }
@@ -99,9 +95,8 @@ VertexPasses::VertexPasses(const Problem& problem, const Springs& springs, const
 void VertexPasses::place_vertices(const Ends& ends) {
   const std::vector<int>& color = ends.color;
   std::vector<int> order;
-  for (std::size_t v = 0; v < color.size(); ++v) {
+  for (std::size_t v = 0; v < color.size(); ++v)
     if (color[v] >= 0) order.push_back(static_cast<int>(v));
-  }
   std::ranges::stable_sort(
       order, {}, [&](int v) { return std::pair(color[v], -std::ssize(ends.springs[v])); });
   for (std::size_t i = 0; i < order.size(); ++i) {
@@ -131,9 +126,8 @@ void VertexPasses::load(const Positions& x, const Positions& y,
 }
 
 void VertexPasses::store(Positions& x) const {
-  for (int i = 0; i < free_places_; ++i) {
+  for (int i = 0; i < free_places_; ++i)
     if (vertex_[i] >= 0) x.col(vertex_[i]) = x_.row(i).transpose();
-  }
 }
 
 void VertexPasses::set_planes(const Contacts* contacts) {
@@ -155,10 +149,9 @@ void VertexPasses::read_pushes(Contacts& contacts) const {
 
 double VertexPasses::visit_all(double stiffness_scale, double relaxation) {
   double largest = 0;
-  for (const Group& group : groups_) {
+  for (const Group& group : groups_)
     largest = std::max(largest, has_planes_ ? visit<true>(group, stiffness_scale, relaxation)
                                             : visit<false>(group, stiffness_scale, relaxation));
-  }
   return largest;
 }
 
@@ -278,16 +271,14 @@ double VertexPasses::visit(const Group& group, double stiffness_scale, double re
 
 void VertexPasses::follow_tensions() {
   moved_ = x_;
-  for (const Group& group : groups_) {
-    for (int s = 0; s < group.springs; ++s) {
+  for (const Group& group : groups_)
+    for (int s = 0; s < group.springs; ++s)
       for (int i = 0; i < width; ++i) {
         const int own = group.place + i, entry = group.entry + s * width + i;
         const Eigen::RowVector3d d = x_.row(other_[entry]) - x_.row(own);
         const double length = d.norm();
         if (length > 0) moved_.row(own) += tension_[entry] / (inertia_[own] * length) * d;
       }
-    }
-  }
   x_.swap(moved_);
 }
 
@@ -296,7 +287,7 @@ bool VertexPasses::update_tensions(double strain_limit) {
   const double low = (1 - strain_limit) * (1 + 1e-15), high = (1 + strain_limit) * (1 - 1e-15);
   const double *x = x_.col(0).data(), *y = x_.col(1).data(), *z = x_.col(2).data();
   int violations = 0;
-  for (const Group& group : groups_) {
+  for (const Group& group : groups_)
     for (int s = 0; s < group.springs; ++s) {
       const int first = group.entry + s * width, own = group.place;
       const int* other = other_.data() + first;
@@ -312,7 +303,6 @@ bool VertexPasses::update_tensions(double strain_limit) {
                       static_cast<int>(!(length <= high * rest[i]));
       }
     }
-  }
   return violations == 0;
 }
 

@@ -108,7 +108,7 @@ void ClosedSurface::find_pseudonormals() {
     }
   }
   convex_ = true;
-  for (int f = 0; f < triangles(); ++f) {
+  for (int f = 0; f < triangles(); ++f)
     for (int i = 0; i < 3; ++i) {
       const int other = sides.twin[3 * f + i] / 3;
       const Vector3d &first = pseudonormal_[std::min(f, other)][0],
@@ -118,7 +118,6 @@ void ClosedSurface::find_pseudonormals() {
       const Vector3d &here = corner(mesh_, f, i), opposite = corner(mesh_, f, (i + 2) % 3) - here;
       convex_ = convex_ && opposite.dot(first) <= 1e-9 * here.norm();
     }
-  }
 }
 
 // A surface without reentrant edges that covers all directions from a point behind its faces, and
@@ -137,11 +136,10 @@ void ClosedSurface::check_orientation() {
                                            b.dot(c) * a.norm() + c.dot(a) * b.norm());
   }
   convex_ = convex_ && covered < 6 * std::numbers::pi;
-  if (!(volume > 0)) {
+  if (!(volume > 0))
     throw std::invalid_argument(
-        "collider: the mesh is inside out; its triangles must be "
-        "counter-clockwise seen from outside");
-  }
+        "collider: the mesh is inside out; its triangles must be counter-clockwise seen from "
+        "outside");
 }
 
 void ClosedSurface::lay_out_grid() {
@@ -180,11 +178,9 @@ std::size_t ClosedSurface::cell_index(const Eigen::Vector3i& cell) const {
 }
 
 void ClosedSurface::fill(const Eigen::Vector3i& cell, int size, int list) {
-  for (int k = 0; k < size; ++k) {
-    for (int j = 0; j < size; ++j) {
+  for (int k = 0; k < size; ++k)
+    for (int j = 0; j < size; ++j)
       for (int i = 0; i < size; ++i) cell_[cell_index(cell + Eigen::Vector3i(i, j, k))] = list;
-    }
-  }
 }
 
 // candidates: every plane that some point of the block of size^3 cells that begins at `cell` is
@@ -325,9 +321,8 @@ ClosedSurface::Nearest ClosedSurface::nearest_among(std::span<const int> triangl
 
 int ClosedSurface::cell_at(const Vector3d& p) const {
   const Vector3d scaled = (p - low_).cwiseProduct(inverse_cell_size_);
-  for (int axis = 0; axis < 3; ++axis) {
+  for (int axis = 0; axis < 3; ++axis)
     if (!(scaled[axis] >= 0 && scaled[axis] < resolution)) return outside;
-  }
   return cell_[cell_index(scaled.cast<int>())];
 }
 

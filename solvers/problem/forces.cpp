@@ -134,13 +134,12 @@ void add_accelerations(const Problem& problem, const Positions& x, const Positio
   }
   const Bending& bending = problem.bending();
   std::size_t begin = 0;
-  for (const std::size_t run : problem.bending_runs()) {
+  for (const std::size_t run : problem.bending_runs())
     for (const std::size_t end = begin + run; begin < end;) {
       const std::size_t count = std::min(most_at_once, end - begin);
       add_bending(bending[begin], count, w, x.data(), scale, y.data());
       begin += count;
     }
-  }
   work.spring_evaluations += static_cast<std::int64_t>(bending.size());
 }
 
@@ -198,6 +197,22 @@ double kinetic_energy(const Problem& problem, const Positions& v) {
   double sum = 0;
   for (Eigen::Index i = 0; i < v.cols(); ++i) sum += problem.mass()[i] * v.col(i).squaredNorm();
   return 0.5 * sum;
+}
+
+// Curvature is the second difference 2 / (l_ab + l_bc) [(x_c - x_b) / l_bc - (x_b - x_a) / l_ab].
+BendingStencil yarn_bending(int a, int b, int c, double l_ab, double l_bc, double rigidity) {
+  const double share = 0.5 * (l_ab + l_bc);
+  return {{a, b, c, a}, {1 / l_ab, -1 / l_ab - 1 / l_bc, 1 / l_bc, 0}, rigidity / share};
+}
+
+double bending_energy(const Bending& bending, const Eigen::Matrix3Xd& x) {
+  double energy = 0;
+  for (const BendingStencil& s : bending) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < 4; ++i) sum += s.coefficient[i] * x.col(s.vertex[i]);
+    energy += 0.5 * s.stiffness * sum.squaredNorm();
+  }
+  return energy;
 }
 
 }  // namespace inextensible

@@ -14,8 +14,6 @@
 // where S is the inverse of A across g. P is regular where that exists, whatever A is along the
 // edge, so nothing needs to be permuted; and K has the right inertia, M + H positive definite on
 // the null space of J, if and only if A across g is positive definite in every block.
-#include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 #include "solvers/systems/kkt_system.h"
@@ -172,11 +170,10 @@ class ChainKkt final : public KktSolver {
         correction_p_(3, problem.vertices()),
         c_(problem.constraints()),
         correction_q_(problem.constraints()) {
-    if (!forms_chains(problem)) {
+    if (!forms_chains(problem))
       throw std::invalid_argument(
           "the linear solver 'block_tridiagonal' needs vertices that form chains in order, each "
           "pinned once at most between its ends");
-    }
     // By place in `edges`, which may have an order of its own.
     std::vector<int> place(edges.count());
     for (int k = 0; k < edges.count(); ++k) place[edges.problem_edge(k)] = k;

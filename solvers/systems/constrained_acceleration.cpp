@@ -26,10 +26,9 @@ Positions constrained_acceleration(const Problem& problem, const State& state) {
   Eigen::Matrix3Xd u(3, problem.constraints());
   edges.gradient(state.x, u);
   Eigen::VectorXd curvature(problem.constraints());  // J' v
-  for (int k = 0; k < edges.count(); ++k) {
+  for (int k = 0; k < edges.count(); ++k)
     curvature[k] = 2 * edges.inverse_rest_length[k] *
                    (state.v.col(edges.b[k]) - state.v.col(edges.a[k])).squaredNorm();
-  }
   Eigen::VectorXd violation(problem.constraints());
   edges.rate(u, a, violation);
   violation += curvature;

@@ -11,7 +11,7 @@ namespace {
 // Calls add(a, b, k) for each stiffness k of shear between two vertices, or of one with itself.
 template <class Add>
 void for_each_shear(const Problem& problem, Add add) {
-  if (const Springs* shear = problem.shear()) {
+  if (const Springs* shear = problem.shear())
     for (std::size_t s = 0; s < shear->edges.size(); ++s) {
       const auto [a, b] = shear->edges[s];
       const double k = shear->stiffness[s];
@@ -19,22 +19,19 @@ void for_each_shear(const Problem& problem, Add add) {
       add(b, b, k);
       add(a, b, -k);
     }
-  }
 }
 
 // The same of bending.
 template <class Add>
 void for_each_bending(const Problem& problem, Add add) {
-  for (const BendingStencil& s : problem.bending()) {
-    for (std::size_t i = 0; i < 4; ++i) {
+  for (const BendingStencil& s : problem.bending())
+    for (std::size_t i = 0; i < 4; ++i)
       for (std::size_t j = 0; j <= i; ++j) {
         const double k = s.stiffness * s.coefficient[i] * s.coefficient[j];
         if (k == 0) continue;
         // A pair stands for both of its places, the diagonal for one.
         add(s.vertex[i], s.vertex[j], i != j && s.vertex[i] == s.vertex[j] ? 2 * k : k);
       }
-    }
-  }
 }
 
 Pairs stiff_pairs(const Problem& problem) {

@@ -79,14 +79,13 @@ class KktSystem final : public KktSolver {
     const auto couple = [&](int i, int j) {
       if (i >= 0 && j >= 0) pairs.emplace_back(i, j);
     };
-    for (int k = 0; k < edges_.count(); ++k) {
+    for (int k = 0; k < edges_.count(); ++k)
       for (int axis = 0; axis < 3; ++axis) {
         const int a = unknown(edges_.a[k], axis), b = unknown(edges_.b[k], axis);
         couple(a, multiplier_offset_ + k);
         couple(b, multiplier_offset_ + k);
         couple(a, b);
       }
-    }
     const auto upper = SymmetricPattern::Triangle::upper;
     const std::vector<int> order = fill_reducing_order(pattern_of(size_, pairs, upper));
     place_.resize(size_);
@@ -100,14 +99,13 @@ class KktSystem final : public KktSolver {
     };
     for (int i = 0; i < size_; ++i) diagonal_.push_back(entry(i, i));
     edge_places_.resize(edges_.count());
-    for (int k = 0; k < edges_.count(); ++k) {
+    for (int k = 0; k < edges_.count(); ++k)
       for (int axis = 0; axis < 3; ++axis) {
         const int a = unknown(edges_.a[k], axis), b = unknown(edges_.b[k], axis);
         edge_places_[k].at_a[axis] = entry(a, multiplier_offset_ + k);
         edge_places_[k].at_b[axis] = entry(b, multiplier_offset_ + k);
         edge_places_[k].coupling[axis] = entry(a, b);
       }
-    }
   }
 
   void assemble() {
@@ -152,21 +150,18 @@ class KktSystem final : public KktSolver {
   bool factor_umfpack(WorkCounters& work) {
     if (!lu_) {  // with both triangles; made when first needed
       Pairs pairs;
-      for (int j = 0; j < size_; ++j) {
+      for (int j = 0; j < size_; ++j)
         for (int e = pattern_.column_start[j]; e < pattern_.column_start[j + 1]; ++e)
           pairs.emplace_back(pattern_.row_index[e], j);
-      }
       SymmetricPattern both = pattern_of(size_, pairs, SymmetricPattern::Triangle::both);
-      for (int j = 0; j < size_; ++j) {
+      for (int j = 0; j < size_; ++j)
         for (int e = both.column_start[j]; e < both.column_start[j + 1]; ++e)
           full_from_upper_.push_back(pattern_.place(both.row_index[e], j));
-      }
       lu_ = make_lu_solver(std::move(both));
     }
     using_umfpack_ = true;
-    for (std::size_t i = 0; i < full_from_upper_.size(); ++i) {
+    for (std::size_t i = 0; i < full_from_upper_.size(); ++i)
       lu_->values()[i] = matrix_[full_from_upper_[i]];
-    }
     return factor_counted(*lu_, work);
   }
 

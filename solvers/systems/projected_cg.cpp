@@ -10,8 +10,6 @@
 // 1983); if there is none yet, the convex H is. Where J D^-1 J^T is singular or conjugate gradients
 // get nowhere, the factored saddle-point matrix takes over. Loops: one assembly and one
 // factorization a Newton iteration; one solve and four passes over edges an iteration here.
-#include <cmath>
-
 #include "solvers/systems/constraint_system.h"
 #include "solvers/systems/kkt_system.h"
 

@@ -22,21 +22,18 @@ SchurComplement::SchurComplement(const EdgeConstraints& edges, int vertices,
     inverse_mass_[edges.b[k]] = edges.wb[k];
   }
   Pairs pairs;
-  for (const std::vector<End>& here : ends) {
-    for (const End& column : here) {
+  for (const std::vector<End>& here : ends)
+    for (const End& column : here)
       for (const End& row : here) pairs.emplace_back(row.edge, column.edge);
-    }
-  }
   pattern_ = pattern_of(edges.count(), pairs, triangle);
   for (const std::vector<End>& here : ends) {
     first_.push_back(static_cast<int>(meetings_.size()));
-    for (const auto& [l, sign_l] : here) {
+    for (const auto& [l, sign_l] : here)
       for (const auto& [k, sign_k] : here) {
         using enum SymmetricPattern::Triangle;
         if (k != l && triangle == (k < l ? lower : upper)) continue;
         meetings_.push_back({k, l, pattern_.place(k, l), sign_k * sign_l});
       }
-    }
   }
   first_.push_back(static_cast<int>(meetings_.size()));
   weigh(std::vector(inverse_mass_).data());
@@ -45,10 +42,9 @@ SchurComplement::SchurComplement(const EdgeConstraints& edges, int vertices,
 void SchurComplement::weigh(const double* inverse_mass) {
   inverse_mass_.assign(inverse_mass, inverse_mass + inverse_mass_.size());
   weight_.assign(pattern_.entries(), 0);
-  for (std::size_t v = 0; v < inverse_mass_.size(); ++v) {
+  for (std::size_t v = 0; v < inverse_mass_.size(); ++v)
     for (int i = first_[v]; i < first_[v + 1]; ++i)
       weight_[meetings_[i].entry] += meetings_[i].sign * inverse_mass_[v];
-  }
 }
 
 void SchurComplement::assemble(const Eigen::Matrix3Xd& left, const Eigen::Matrix3Xd& right,
@@ -59,9 +55,8 @@ void SchurComplement::assemble(const Eigen::Matrix3Xd& left, const Eigen::Matrix
   for (int l = 0; l < pattern_.n; ++l) {
     const double* ul = right.data() + 3 * l;
     const int end = pattern_.column_start[l + 1];
-    for (int i = pattern_.column_start[l]; i < end; ++i) {
+    for (int i = pattern_.column_start[l]; i < end; ++i)
       values[i] = w[i] * dot3(g + 3 * row[i], ul);
-    }
   }
 }
 

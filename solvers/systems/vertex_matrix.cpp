@@ -8,17 +8,15 @@ VertexMatrix::VertexMatrix(const Problem& problem, const Pairs& coupled, std::st
                            int block)
     : place(problem.vertices(), -1) {
   std::vector<int> free;
-  for (int v = 0; v < problem.vertices(); ++v) {
+  for (int v = 0; v < problem.vertices(); ++v)
     if (problem.inverse_mass()[v] > 0) free.push_back(v);
-  }
   const int n = static_cast<int>(free.size());
   const auto couplings_in = [&](const std::vector<int>& order) {
     vertex = order;
     for (int f = 0; f < n; ++f) place[order[f]] = f;
     Pairs pairs;
-    for (const auto& [a, b] : coupled) {
+    for (const auto& [a, b] : coupled)
       if (place[a] >= 0 && place[b] >= 0 && a != b) pairs.emplace_back(place[a], place[b]);
-    }
     return pairs;
   };
   Pairs pairs = couplings_in(free);

@@ -1,7 +1,6 @@
 """Pictures of `bench film`: what is drawn is what was recorded."""
 
 import json
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -29,8 +28,8 @@ def pictured(folder: Path, frames: list[int], ends: int = 3) -> Path:
     return folder
 
 
-def run(folder: Path, out: Path, **more: object) -> subprocess.CompletedProcess:
-    return subprocess.run([sys.executable, ROOT / "plots/film.py", folder, "--out", out], capture_output=True, text=True, check=False, **more)
+def run(folder: Path, out: Path) -> subprocess.CompletedProcess:
+    return subprocess.run([sys.executable, ROOT / "plots/film.py", folder, "--out", out], capture_output=True, text=True, check=False)
 
 
 def pixels(picture: Image.Image) -> np.ndarray:
@@ -54,9 +53,6 @@ def test_a_film_has_all_frames(tmp_path: Path) -> None:
     assert run(pictured(tmp_path, [0, 1, 2]), out).returncode == 0
     with Image.open(out) as picture:
         assert (picture.n_frames, picture.size[0]) == (3, 2 * WIDTH)
-    if shutil.which("ffmpeg"):
-        out = tmp_path / "film.mp4"
-        assert run(tmp_path, out).returncode == 0 and out.stat().st_size > 0
 
 
 def test_a_run_that_gave_up_has_pictures_to_the_end_of_the_film(tmp_path: Path) -> None:
@@ -66,10 +62,8 @@ def test_a_run_that_gave_up_has_pictures_to_the_end_of_the_film(tmp_path: Path) 
     assert film.caption(made, 0, 2)[2] == "strain limit 1 %, largest so far 0.99 %"
 
 
-@pytest.mark.parametrize("name, env, lost, message", [("x.mp4", {"PATH": "/nowhere"}, "", "film.py: ffmpeg missing"),
-                                                      ("x.png", None, "film.json", "film.py: ")])
-def test_what_is_missing_is_said_in_a_line(name: str, env: dict | None, lost: str, message: str, tmp_path: Path) -> None:
+def test_what_is_missing_is_said_in_a_line(tmp_path: Path) -> None:
     pictured(tmp_path, [0])
-    (tmp_path / (lost or name)).unlink(missing_ok=True)
-    done = run(tmp_path, tmp_path / name, env=env)
-    assert done.returncode == 2 and done.stderr.startswith(message) and done.stderr.count("\n") == 1 and not (tmp_path / name).exists()
+    (tmp_path / "film.json").unlink()
+    done = run(tmp_path, tmp_path / "x.png")
+    assert done.returncode == 2 and done.stderr.startswith("film.py: ") and done.stderr.count("\n") == 1 and not (tmp_path / "x.png").exists()

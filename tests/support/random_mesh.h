@@ -72,7 +72,7 @@ inline RandomMesh random_mesh(Random& random, int rows, int columns, int pinned)
   Positions x(3, n);
   std::vector<double> mass;
   std::vector<Edge> edges;
-  for (int i = 0; i < rows; ++i) {
+  for (int i = 0; i < rows; ++i)
     for (int j = 0; j < columns; ++j) {
       const int v = i * columns + j;
       x.col(v) << j + uniform(random, -0.2, 0.2), uniform(random, -0.3, 0.3),
@@ -81,7 +81,6 @@ inline RandomMesh random_mesh(Random& random, int rows, int columns, int pinned)
       if (j > 0) edges.push_back({v - 1, v});
       if (i > 0) edges.push_back({v, v - columns});  // both orientations occur
     }
-  }
   std::vector<int> pins(n);
   std::iota(pins.begin(), pins.end(), 0);
   std::shuffle(pins.begin(), pins.end(), random);

@@ -1,6 +1,4 @@
 // The strain-error grid and findings of invented times.
-#include <gtest/gtest.h>
-
 #include "harness/analysis/plane.h"
 #include "harness/points/result_file.h"
 #include "support/invented_runs.h"
@@ -8,8 +6,7 @@
 namespace harness::analysis {
 namespace {
 
-using invented::document;
-using invented::run;
+using invented::document, invented::run;
 
 std::string winner(const Cell& cell) {
   return cell.first() ? cell.first()->point.id() : "none: " + cell.empty_because;
@@ -143,20 +140,19 @@ TEST(Findings, NameTheFirstItsPriceAndTheBestOfThePaper) {
   } cases[] = {
       {{run("yarn_projection", 0.01, 0.01, 0.05, 0.014), run("icd", 0.01, 0.005, 0.2, 0.01),
         run("shake", 0.01, 0.01, 0.1, 0.012)},
-       "At 1 % strain, motion error at most 2 %, yarn_projection is the fastest: 50 ms a "
-       "simulated second with steps of 1/100 s and an error of 1.4 %; shake, the best of "
-       "the paper's six, takes 2.00 (1.99-2.01) times as long."},
+       "At 1 % strain, motion error at most 2 %, yarn_projection is the fastest: 50 ms a simulated "
+       "second with steps of 1/100 s and an error of 1.4 %; shake, the best of the paper's six, "
+       "takes 2.00 (1.99-2.01) times as long."},
       {{run("yarn_projection", 0.01, 0.01, 0.0500, 0.01), run("icd", 0.01, 0.01, 0.0501, 0.01),
         run("shake", 0.01, 0.01, 0.1, 0.01)},
-       "yarn_projection and icd are the fastest, too close to rank: 50 ms a simulated "
-       "second with steps of 1/100 s and an error of 1 %; shake, the next, takes 2.0"},
+       "yarn_projection and icd are the fastest, too close to rank: 50 ms a simulated second with "
+       "steps of 1/100 s and an error of 1 %; shake, the next, takes 2.0"},
       // No run has an error of at most 2 %: the nearest looser level is answered.
       {{run("yarn_projection", 0.01, 0.01, 0.05, 0.04), run("icd", 0.01, 0.01, 0.1, 0.3)},
        "At 1 % strain, motion error at most 5 %, only yarn_projection has a run"},
       {{run("yarn_projection", 0.01, 0.01, 0.05, 0.3)}, "At 1 % strain, whatever the motion, "},
       {{failed},
-       "At 1 % strain, whatever the motion, there is no answer: no run keeps the strain "
-       "limit."},
+       "At 1 % strain, whatever the motion, there is no answer: no run keeps the strain limit."},
   };
   for (const auto& [runs, sentence] : cases) {
     const auto findings = findings_of(planes_of(document(runs)));

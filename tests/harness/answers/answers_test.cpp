@@ -102,9 +102,9 @@ Positions net_on_ball(int n, double link, double radius) {
     at(c, k) << radius * std::sin(angle), radius * std::cos(angle), 0;
     at(k, c) << 0, radius * std::cos(angle), radius * std::sin(angle);
   }
-  for (const int down : {-1, 1}) {
-    for (const int right : {-1, 1}) {
-      for (int i = c + down; i >= 0 && i < n; i += down) {
+  for (const int down : {-1, 1})
+    for (const int right : {-1, 1})
+      for (int i = c + down; i >= 0 && i < n; i += down)
         for (int j = c + right; j >= 0 && j < n; j += right) {
           // On the ball and as far from a as from b: in the plane through the centre across a - b.
           // There the two points `link` from both are mirror images in the line from the centre
@@ -113,9 +113,6 @@ Positions net_on_ball(int n, double link, double radius) {
           const Eigen::Vector3d across = at(i - down, j - right), line = (a + b).normalized();
           at(i, j) = 2 * line * line.dot(across) - across;
         }
-      }
-    }
-  }
   return x;
 }
 

@@ -1,15 +1,12 @@
-// Where output goes, and what stays unchanged: links, devices, pipes, the user's own files. Input:
-// no text makes a document unreadable, and no expression runs for ever.
+// Where output goes, and what stays unchanged; no text that is read makes the program fail or hang.
 #include "harness/base/files.h"
 
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include <fstream>
 #include <thread>
 
 #include "harness/base/json.h"
-#include "harness/base/text.h"
 #include "support/refusal.h"
 
 namespace harness {
@@ -17,8 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Files : public testing::Test {
- protected:
+struct Files : testing::Test {
   std::string at(const std::string& name) const { return folder_.file(name); }
   static std::string content(const std::string& path) { return read_file(path, "test"); }
 

@@ -1,10 +1,8 @@
-// Children that misbehave end, and their parents do not. One process at a time takes times; the
-// lock ends with its process, and programs started under it go on.
+// Children that misbehave end, and their parents do not. One process at a time takes times.
 #include <sys/prctl.h>
 #include <sys/wait.h>
 
 #include <array>
-#include <chrono>
 #include <cstdlib>
 #include <thread>
 
@@ -81,8 +79,7 @@ TEST(ChildProcess, TimeInWhichTheParentWasStoppedIsNotTheChilds) {
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << "it counted as timed out";
 }
 
-class Lock : public testing::Test {
- protected:
+struct Lock : testing::Test {
   void SetUp() override { setenv("TMPDIR", ::testing::TempDir().c_str(), 1); }
 };
 

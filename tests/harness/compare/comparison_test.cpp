@@ -1,8 +1,5 @@
-// The rank test against scipy's numbers; changes, gates and reports; interleaved pairs with a fake
-// clock, without processes.
+// The rank test against scipy's numbers; changes and gates; pairs with a fake clock.
 #include "harness/compare/comparison.h"
-
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
@@ -218,8 +215,7 @@ Comparison compared(const std::vector<std::string>& names, const RunOne& run) {
 }
 
 // A machine whose speed wanders, and now and then drops for a while.
-class Machine {
- public:
+struct Machine {
   explicit Machine(std::uint64_t seed) : random_(seed) {}
   double time(double seconds) {
     drift_ = 0.95 * drift_ + 0.02 * normal_(random_);

@@ -11,8 +11,7 @@ using End = DriveState::End;
 constexpr double whole_step = 0.01;
 
 // Stands still, and refuses what `accepts` does not like.
-class Picky final : public Stepper {
- public:
+struct Picky final : Stepper {
   using Accepts = std::function<bool(double time, double h)>;
   Picky(const Scene& scene, Accepts accepts)
       : Stepper(scene.problem), accepts_(std::move(accepts)) {}

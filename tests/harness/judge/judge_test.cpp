@@ -1,6 +1,4 @@
-// The judge on motions that are made up: which samples of a reference count, what is delivered
-// after a collision, and what hardly moves. Strain and energy against figures found by hand. Which
-// ways cross a body.
+// The judge on motions that are made up, and on figures found by hand.
 #include "harness/judge/judge.h"
 
 #include <gtest/gtest.h>
@@ -8,14 +6,12 @@
 #include <Eigen/Geometry>
 #include <random>
 
-#include "harness/judge/mechanics.h"
 #include "support/scenes.h"
 
 namespace harness {
 namespace {
 
-using Eigen::Vector3d;
-using inextensible::TriangleMesh;
+using Eigen::Vector3d, inextensible::TriangleMesh;
 
 const Scene chain_of_four = built_scene("chain", {{"n", 4}});
 

@@ -1,15 +1,9 @@
 // The pendulum in angles against dense equations of motion and known places; what is stored. The
 // error is tested by mutation: a run of the wrong physics is off by more than the headline's level,
 // and one of the right physics is not.
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
 #include <fstream>
-#include <random>
 
-#include "harness/base/clock.h"
-#include "harness/base/files.h"
-#include "harness/base/text.h"
 #include "harness/judge/drive.h"
 #include "harness/judge/judge.h"
 #include "harness/judge/reference_routes.h"

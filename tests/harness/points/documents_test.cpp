@@ -1,5 +1,4 @@
-// Corrupted suites and result files, by the thousand, repeatably; and no field of a point is lost
-// on its way through JSON.
+// Corrupted suites and result files, by the thousand, and points on their way through JSON.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -136,8 +135,7 @@ TEST(Documents, CorruptedResultsAreReadOrRefusedInALine) {
 
 // ---- Points, filled at random by the tables of fields: a new field is tested with its row ----
 
-class Random {
- public:
+struct Random {
   explicit Random(std::uint64_t seed) : generator_(seed) {}
 
   void fill(double& value, bool nullable) {

@@ -69,8 +69,7 @@ TEST(Choose, LaddersFollowWhatScreeningSaw) {
 }
 
 // Six contestants on a chain: seconds at 1/60 s, twice as many at half the step. The error is 1 %.
-class InventedMachine {
- public:
+struct InventedMachine {
   std::map<std::string, double> seconds{
       {"fast_projection", 5},        {"jacobi", 40}, {"gauss_seidel", 30},
       {"yarn_projection@bdf2", 0.2}, {"icd", 20},    {"implicit_springs", 10}};

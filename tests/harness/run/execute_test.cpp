@@ -1,5 +1,4 @@
-// Runs in child processes: whatever a child does to itself becomes its run's status. Journals and
-// pieces: however a sweep is divided, its parts make up the whole.
+// Runs in child processes, whatever a child does to itself; journals and pieces of sweeps.
 #include "harness/run/execute.h"
 
 #include <gtest/gtest.h>
@@ -202,8 +201,7 @@ json header_of(const Suite& suite) {
   return {{"pid", 1}, {"identity", to_json(suite)}, {"context", {{"date", "today"}}}};
 }
 
-class JournalTest : public ::testing::Test {
- protected:
+struct JournalTest : ::testing::Test {
   std::string out() const { return folder_.file("out.json"); }
   std::string journal() const { return out() + ".journal"; }
 

@@ -90,8 +90,7 @@ const Fault faults[] = {
      }},
 };
 
-class Corrupted final : public VelocityFilter {
- public:
+struct Corrupted final : VelocityFilter {
   Corrupted(const Problem& problem, double limit, const Fault& fault)
       : problem_(problem),
         fault_(fault),
@@ -135,8 +134,7 @@ Checks failed_checks(const std::string& solver, bool hard_cases = false) {
   return failed;
 }
 
-class BrokenSolvers : public ::testing::Test {
- protected:
+struct BrokenSolvers : ::testing::Test {
   static void SetUpTestSuite() {
     if (find_backend("sound")) return;
     std::vector<Backend> rows{row("over_relaxed")};

@@ -1,6 +1,4 @@
-// What every linear solver of the list promises, on every matrix that it takes, against dense
-// algebra; and what some of them promise beyond that.
-
+// What every linear solver of the list promises, and some beyond that, against dense algebra.
 #include <Eigen/Dense>
 #include <unsupported/Eigen/KroneckerProduct>
 
@@ -10,11 +8,7 @@
 namespace inextensible {
 namespace {
 
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-using testing::Random;
-using testing::random_matrix;
-using testing::uniform;
+using Eigen::MatrixXd, Eigen::VectorXd, testing::Random, testing::random_matrix, testing::uniform;
 using Triangle = SymmetricPattern::Triangle;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -54,10 +48,9 @@ SymmetricPattern chain_pattern(int rows, int block, Triangle triangle = Triangle
 // The entries that are not exactly 0.
 SymmetricPattern pattern_of(const MatrixXd& matrix, Triangle triangle) {
   Pairs pairs;
-  for (int j = 0; j < matrix.cols(); ++j) {
+  for (int j = 0; j < matrix.cols(); ++j)
     for (int i = 0; i < j; ++i)
       if (matrix(i, j) != 0) pairs.emplace_back(i, j);
-  }
   return pattern_of(static_cast<int>(matrix.rows()), pairs, triangle);
 }
 
@@ -168,13 +161,12 @@ TEST_P(SpdSolvers, RefuseWhatIsNotPositiveDefiniteAndForgetIt) {
     const double least = system.dense.selfadjointView<Eigen::Lower>().eigenvalues()[0];
     EXPECT_TRUE(system.factor_shifted(0.99 * least));
     EXPECT_FALSE(system.factor_shifted(1.01 * least));
-    for (const int column : {0, n / 2, n - 1}) {
+    for (const int column : {0, n / 2, n - 1})
       for (const double bad : {-1.0, 0.0, nan, -infinity, infinity}) {
         write(system.dense, system.pattern, *system.solver);
         system.solver->values()[system.pattern.diagonal(column)] = bad;
         EXPECT_FALSE(system.solver->factor()) << "diagonal entry " << column << " is " << bad;
       }
-    }
     EXPECT_EQ(solution(), fresh);
   });
 }
@@ -185,7 +177,7 @@ TEST_P(SpdSolvers, RefusePivotsThatLostTheirDigitsWhereToldTo) {
   const SpdSolverRow& row = GetParam();
   if (std::string_view(row.name) == "cholmod_supernodal") return;
   const int block = row.takes == Takes::block_tridiagonal ? 3 : 1;
-  for (const int rows : {2, 3, 12, 13}) {
+  for (const int rows : {2, 3, 12, 13})
     for (const int held : {0, rows / 2, rows - 1}) {
       SCOPED_TRACE(std::to_string(rows) + " rows, held at " + std::to_string(held));
       const auto solver = [&](double hold, double least) {
@@ -204,7 +196,6 @@ TEST_P(SpdSolvers, RefusePivotsThatLostTheirDigitsWhereToldTo) {
       EXPECT_FALSE(solver(1e-12, 1e-10)->factor());
       EXPECT_FALSE(solver(0, 1e-10)->factor());
     }
-  }
 }
 
 TEST(ChainSolvers, TakeTheirPatternOnly) {

@@ -1,17 +1,12 @@
-// Methods that solve the same equations by different iterations take the same steps as far as they
-// have converged. What ADMM and augmented VBD keep and remember.
-
+// Methods that solve the same equations by different iterations take the same steps.
 #include "harness/judge/mechanics.h"
 #include "solvers/problem/edge_constraints.h"
-#include "solvers/registry.h"
 #include "support/motion.h"
 
 namespace inextensible {
 namespace {
 
-using testing::for_seeds;
-using testing::h;
-using testing::Random;
+using testing::for_seeds, testing::h, testing::Random;
 
 enum class Under { nothing, forces, contact };  // forces: shear, bending and drag of some vertices
 

@@ -1,7 +1,6 @@
 // What every method in every time stepper must hold, besides what `bench check` asks of it
 // (conformance_test.cpp): coordinates and units, obstacles that move, refusals that leave nothing
 // behind, honest random steps, no allocation.
-
 #include <Eigen/Geometry>
 #include <atomic>
 #include <cstdlib>
@@ -28,18 +27,11 @@ extern "C" void* malloc(std::size_t size) {
 namespace inextensible {
 namespace {
 
-using Eigen::Vector3d;
-using testing::for_seeds;
-using testing::h;
-using testing::moving_state;
-using testing::Random;
-using testing::random_mesh;
-using testing::single_rounding;
-using testing::uniform;
+using Eigen::Vector3d, testing::for_seeds, testing::h, testing::moving_state, testing::Random,
+    testing::random_mesh, testing::single_rounding, testing::uniform;
 constexpr std::uint64_t seeds = 8;
 
-class EveryMethod : public ::testing::TestWithParam<const char*> {
- protected:
+struct EveryMethod : ::testing::TestWithParam<const char*> {
   const Backend& row = *find_backend(GetParam());
   const bool limits_strain = row.strain_control == StrainControl::strain_limit;
 

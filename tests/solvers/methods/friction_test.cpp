@@ -1,6 +1,4 @@
-// Friction of every kind of method against what statics and dynamics say of it: a rope on a slope,
-// a vertex on a turntable, and a rope round a post.
-
+// Friction of every kind of method against what statics and dynamics say of it.
 #include <Eigen/Geometry>
 #include <numbers>
 
@@ -11,8 +9,7 @@
 namespace inextensible {
 namespace {
 
-using Eigen::Vector3d;
-using std::numbers::pi;
+using Eigen::Vector3d, std::numbers::pi;
 
 constexpr double gravity = 9.81, short_step = 1.0 / 400;
 

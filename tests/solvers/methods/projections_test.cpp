@@ -1,6 +1,5 @@
 // Fast projection and ICD: the theorems of the paper. Yarns are found whatever the mesh; a yarn's
 // projection is fast projection's on a chain. Where methods fail is asked by the hard cases.
-
 #include <Eigen/Dense>
 
 #include "solvers/methods/yarn_pass.h"
@@ -10,11 +9,7 @@
 namespace inextensible {
 namespace {
 
-using testing::for_seeds;
-using testing::h;
-using testing::Random;
-using testing::random_mesh;
-using testing::RandomMesh;
+using testing::for_seeds, testing::h, testing::Random, testing::random_mesh, testing::RandomMesh;
 constexpr int meshes = 8;
 
 struct Filtered {

@@ -1,6 +1,4 @@
-// Implicit springs and vertex block descent: what makes them cheap may not change what they
-// converge to. PBD with substeps and soft step.
-
+// Springs, PBD with substeps and soft step: what makes them cheap, and what they converge to.
 #include <Eigen/Dense>
 #include <numbers>
 
@@ -11,12 +9,8 @@
 namespace inextensible {
 namespace {
 
-using testing::for_seeds;
-using testing::h;
-using testing::moving_state;
-using testing::Random;
-using testing::random_mesh;
-using testing::RandomMesh;
+using testing::for_seeds, testing::h, testing::moving_state, testing::Random, testing::random_mesh,
+    testing::RandomMesh;
 
 std::unique_ptr<Stepper> springs(const RandomMesh& mesh, Settings settings) {
   settings["stiffness"] = 1e5;
@@ -81,12 +75,11 @@ TEST(VertexPasses, MoveOneVertexAfterTheOtherInColors) {
     passes.load(x, y, problem.mass());
     for (int i = 0; i < 3; ++i) {
       passes.visit_all(1);
-      for (const int color : {0, 1}) {
+      for (const int color : {0, 1})
         for (int v = 0; v < n; ++v) {
           const int place = v < pin ? v : v - pin - 1;
           if (v != pin && place % 2 == color) move(v, problem, springs, y, wanted);
         }
-      }
     }
     passes.store(x);
     EXPECT_LT((x - wanted).cwiseAbs().maxCoeff(), 1e-12);
@@ -149,7 +142,7 @@ TEST(PbdSubsteps, LeaveAHangingRopeTheStrainOfTheory) {
 // At rest the impulses are the loads, and what is soft in them leaves link k longer by
 // load / (m_k omega^2), omega = 2 pi frequency / h, m_k = 1 / (w_a + w_b).
 TEST(SoftStep, LeavesAHangingRopeTheElongationOfItsSprings) {
-  for (const double step : {0.004, 0.001}) {
+  for (const double step : {0.004, 0.001})
     for (const double frequency : {0.25, 0.5}) {
       SCOPED_TRACE("step " + std::to_string(step) + ", frequency " + std::to_string(frequency));
       const auto longer = elongations("soft_step", step, {{"frequency", frequency}});
@@ -160,7 +153,6 @@ TEST(SoftStep, LeavesAHangingRopeTheElongationOfItsSprings) {
         EXPECT_NEAR(longer[k - 1], wanted, 1e-3 * wanted) << "link " << k;
       }
     }
-  }
 }
 
 // A link that turns about a pin: the step's impulse is along its direction at the start, and the

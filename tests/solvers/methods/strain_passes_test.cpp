@@ -1,5 +1,4 @@
-// Passes over colored edges against loops over the problem's own edges, written out; and the strain
-// limiters that make such passes.
+// Passes over colored edges against loops over the problem's own edges; and the strain limiters.
 #include "solvers/methods/strain_passes.h"
 
 #include "solvers/registry.h"
@@ -8,12 +7,8 @@
 namespace inextensible {
 namespace {
 
-using Eigen::Vector3d;
-using testing::for_seeds;
-using testing::h;
-using testing::Random;
-using testing::RandomMesh;
-using testing::single_rounding;
+using Eigen::Vector3d, testing::for_seeds, testing::h, testing::Random, testing::RandomMesh,
+    testing::single_rounding;
 
 // What makes passes fast on cloth numbered row after row: few fillers, and nothing to gather.
 TEST(ColoredEdges, AreAdjacentOnClothAndChains) {
@@ -103,8 +98,8 @@ TEST(StrainPasses, EqualALoopOverEdges) {
 // A corrected edge lies on the limit, where roundings decide: it must not be corrected for ever.
 TEST(StrainLimiting, ConvergesWhereTheTargetIsTheLimit) {
   const auto problem = testing::one_edge(1, 0.3);
-  for (const char* solver : {"jacobi", "gauss_seidel", "gauss_seidel_colored"}) {
-    for (const double limit : {0.01, 1e-6, 1e-10}) {
+  for (const char* solver : {"jacobi", "gauss_seidel", "gauss_seidel_colored"})
+    for (const double limit : {0.01, 1e-6, 1e-10})
       for (const double length : {0.3, 0.98, 1.02, 4.0}) {
         SCOPED_TRACE(std::string(solver) + ", limit " + std::to_string(limit));
         State state = testing::stretched_edge(0);
@@ -112,14 +107,12 @@ TEST(StrainLimiting, ConvergesWhereTheTargetIsTheLimit) {
         const Settings settings{{"target", 1.0}, {"max_iterations", 2000.0}};
         EXPECT_TRUE(make_stepper(solver, problem, {limit, 1, settings})->advance(state, h));
       }
-    }
-  }
 }
 
 // An edge 30 % too long at a limit of 10 %, one correction after the other: with relaxation 1.5 its
 // strain is 0.3, -0.15, 0.075; with 0.5 it is 0.3, 0.15, 0.075. The heavier end moves less.
 TEST(StrainLimiting, TakesItsRelaxationTimesTheCorrection) {
-  for (const char* solver : {"gauss_seidel", "gauss_seidel_colored", "jacobi"}) {
+  for (const char* solver : {"gauss_seidel", "gauss_seidel_colored", "jacobi"})
     for (const double relaxation : {0.5, 1.5}) {
       SCOPED_TRACE(std::string(solver) + ", relaxation " + std::to_string(relaxation));
       const auto stepper =
@@ -131,7 +124,6 @@ TEST(StrainLimiting, TakesItsRelaxationTimesTheCorrection) {
       EXPECT_NEAR((state.x.col(1) - state.x.col(0)).norm(), 1.075, single_rounding);
       EXPECT_NEAR(state.x(0, 0), 0.75 * 0.225, single_rounding);
     }
-  }
 }
 
 TEST(Jacobi, ConvergesAtValenceThirtyWithUnequalMasses) {

@@ -48,7 +48,7 @@ TEST(Registry, EveryPairIsARowOrHasAReason) {
 }
 
 TEST(Registry, DefaultsAndTunableRangesArePermitted) {
-  for (const Backend& row : backends()) {
+  for (const Backend& row : backends())
     for (const SettingInfo& info : row.settings) {
       SCOPED_TRACE(std::string(row.name) + ": " + info.name);
       if (const auto* word = std::get_if<const char*>(&info.initial)) {
@@ -61,7 +61,6 @@ TEST(Registry, DefaultsAndTunableRangesArePermitted) {
       EXPECT_TRUE(info.range.contains(info.tunable->least));
       EXPECT_TRUE(info.range.contains(info.tunable->largest));
     }
-  }
 }
 
 TEST(Registry, SettingsOutOfRangeAreRefusedByName) {

@@ -1,6 +1,4 @@
-// Orders of convergence on a smooth stretch of the chain's motion, against the pendulum in angles;
-// energy behaviour; BDF2's own identities.
-
+// Orders of convergence against the pendulum in angles, energy behaviour, and BDF2's identities.
 #include "harness/base/statistics.h"
 #include "harness/judge/mechanics.h"
 #include "harness/judge/reference.h"
@@ -13,11 +11,8 @@
 namespace harness {
 namespace {
 
-using inextensible::make_stepper;
-using inextensible::Positions;
-using inextensible::Settings;
-using inextensible::State;
-using inextensible::Stepper;
+using inextensible::make_stepper, inextensible::Positions, inextensible::Settings,
+    inextensible::State, inextensible::Stepper;
 
 constexpr double stretch = 0.32;  // s, of smooth motion
 constexpr double tight = 1e-11;   // strain limit: slack must not matter
@@ -73,8 +68,7 @@ TEST(Order, IsThatOfTheMethodInItsOwnStepper) {
 }
 
 // Every method that keeps a strain limit, here next to nothing, in a stepper of second order.
-class PairOrder : public ::testing::TestWithParam<const char*> {
- protected:
+struct PairOrder : ::testing::TestWithParam<const char*> {
   double of(double radius) const {
     const Settings wanted{{"target", 0.0}, {"spectral_radius", radius}};
     return order(GetParam(), inextensible::names::those_of(GetParam(), wanted)).value;
@@ -134,7 +128,7 @@ TEST(Energy, OfAHeavyEndDoesNotRiseWhileStepsAreOk) {
   const auto problem = std::make_shared<const inextensible::Problem>(parts);
   const double weight = 9.81 * problem->total_mass();  // times a length of 1 m
   int ended = 0;
-  for (const char* name : {"fast_projection", "shake", "icd", "yarn_projection@bdf2"}) {
+  for (const char* name : {"fast_projection", "shake", "icd", "yarn_projection@bdf2"})
     for (const double h : {1.0 / 60, 1.0 / 240}) {
       State state = start;
       const auto stepper = make_stepper(name, problem, {.strain_limit = 0.01, .start = &start});
@@ -149,7 +143,6 @@ TEST(Energy, OfAHeavyEndDoesNotRiseWhileStepsAreOk) {
         ASSERT_LT(energy, 0.55 * weight) << name;
       }
     }
-  }
   EXPECT_GT(ended, 0);
 }
 

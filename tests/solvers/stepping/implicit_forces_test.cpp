@@ -151,11 +151,10 @@ TEST(ImplicitForces, DampASpringAsTheirStepperDoes) {
   const double h = 0.05, flight = 0.1 + h * 0.3;
   EXPECT_NEAR(after_a_step("fast_projection", 2000, 0.3, {}), flight / (1 + h * h * 2000 / 0.5),
               1e-7 * flight);
-  for (const double rho : {0.0, 0.3, 1.0}) {
+  for (const double rho : {0.0, 0.3, 1.0})
     EXPECT_NEAR(after_a_step("fast_projection@midpoint", 2e9, 0, {{"spectral_radius", rho}}),
                 -rho * 0.1, 1e-7)
         << rho;
-  }
 }
 
 TEST(Drag, LetsFallAtTheSpeedAtWhichItBearsTheWeight) {

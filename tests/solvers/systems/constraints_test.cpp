@@ -1,7 +1,6 @@
 // C, its gradient, J W J^T with and without contacts, SHAKE's matrix and constrained accelerations,
 // by slow second routes and mechanics. (Starting half a step back is what lets every method fall
 // exactly: every_method_test.cpp.)
-
 #include <Eigen/Dense>
 #include <Eigen/SparseCore>
 
@@ -13,10 +12,7 @@
 namespace inextensible {
 namespace {
 
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-using testing::Random;
-using testing::random_mesh;
+using Eigen::MatrixXd, Eigen::VectorXd, testing::Random, testing::random_mesh;
 using Triangle = SymmetricPattern::Triangle;
 constexpr std::uint64_t seeds = 20;
 
@@ -113,8 +109,8 @@ TEST(SchurComplement, EqualsTheDenseProductInEachTriangleWithAndWithoutContacts)
     edges.gradient(y, uy);
     std::vector<double> other_w = problem.inverse_mass();
     for (double& one : other_w) one *= testing::uniform(random, 0.5, 2);
-    for (const auto triangle : {Triangle::lower, Triangle::upper, Triangle::both}) {
-      for (const bool weighed : {false, true}) {
+    for (const auto triangle : {Triangle::lower, Triangle::upper, Triangle::both})
+      for (const bool weighed : {false, true})
         for (const bool touching : {false, true}) {
           SCOPED_TRACE(touching ? "contacts" : "no contacts");
           SchurComplement schur(edges, problem.vertices(), triangle);
@@ -140,14 +136,11 @@ TEST(SchurComplement, EqualsTheDenseProductInEachTriangleWithAndWithoutContacts)
           MatrixXd found = Eigen::Map<const Eigen::SparseMatrix<double>>(
               pattern.n, pattern.n, pattern.entries(), pattern.column_start.data(),
               pattern.row_index.data(), values.data());
-          if (!both) {
+          if (!both)
             found = triangle == Triangle::lower ? MatrixXd(found.selfadjointView<Eigen::Lower>())
                                                 : MatrixXd(found.selfadjointView<Eigen::Upper>());
-          }
           EXPECT_LT((found - jx * mobility * (both ? jy : jx).transpose()).norm(), 1e-11);
         }
-      }
-    }
   });
 }
 

@@ -1,5 +1,4 @@
 // ICD's saddle-point system in every solver, against its dense form.
-
 #include <Eigen/Dense>
 #include <tuple>
 
@@ -10,10 +9,7 @@
 namespace inextensible {
 namespace {
 
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-using testing::Random;
-using testing::uniform;
+using Eigen::MatrixXd, Eigen::VectorXd, testing::Random, testing::uniform;
 
 // K over all 3 n coordinates, pinned ones with a unit diagonal: they then decouple.
 MatrixXd dense_kkt(const Problem& problem, const Positions& x, const VectorXd& mu,
