@@ -1,9 +1,13 @@
-// kernels: the linear solvers' share of a step, timed piece by piece by Google Benchmark. Names:
-// piece/solver/scene:n. Matrices J W J^T are those of a cloth in mid-drape and a chain in
-// mid-swing, at the positions that a filter gets. Items are constrained edges. Solves include a
-// copy of their right-hand side, a few percent. of_peak compares flops of a factorization with
-// those of a dense product, of_bandwidth bytes of the factor, read twice by a solve, with the
-// bandwidth at which an array of its size is read (the library prints such ratios with "/s" behind
+// kernels: the inner pieces of a step, timed one by one by Google Benchmark, so that the cost of a
+// step can be explained from its parts. Names: piece/solver/scene:n. Matrices are those of a cloth
+// in mid-drape (above 150 vertices a side soon after its start) and a chain in mid-swing, at the
+// positions that a filter gets. Items are constrained edges, or vertices. collision_pass and the
+// solves include a copy of their input, a few percent. A pass of strain limiting has its time and
+// its bytes a visit of an edge, with the least time that arithmetic (a division) and memory (the
+// bytes, at the bandwidth of an array as large as all that a pass reads) leave, and floor_ratio,
+// its time over the larger of these two; of_peak and of_bandwidth compare flops of a factorization
+// with those of a dense product, and bytes of the factor, read twice by a solve, with the bandwidth
+// at which an array of the factor's size is read (the library prints such ratios with "/s" behind
 // them).
 #include <benchmark/benchmark.h>
 
@@ -36,6 +40,21 @@ double shortest(int rounds, Work work) {
     best = std::min(best, thread_seconds() - start);
   }
   return best;
+}
+
+// s for a division, independent of others, in single precision and the first-level cache: no pass
+// that corrects every edge is faster. Measured at the first call.
+double division_seconds() {
+  constexpr int passes = 20, edges = 1024;
+  static const double all = shortest(1000, [] {
+    std::array<float, edges> lengths{};
+    lengths.fill(1.2F);
+    for (int i = 0; i < passes; ++i) {
+      for (float& q : lengths) q = 1.5F - 0.5F / q;
+      benchmark::DoNotOptimize(lengths);
+    }
+  });
+  return all / (passes * edges);
 }
 
 // In as many sums as hide how long an addition takes.
@@ -75,11 +94,13 @@ double peak_flops() {
   return 2.0 * size * size * size / seconds;
 }
 
-// A scene after some steps of fast projection, and where the next unconstrained step takes it. Made
-// once: Google Benchmark calls each benchmark several times.
+// A scene after some steps of fast projection: deformed, and in contact if there is an obstacle.
+// Made once: Google Benchmark calls each benchmark several times.
 struct Moment {
   Scene scene;
-  Positions x0;
+  double h;  // s
+  State state;
+  Positions x0;  // after the next unconstrained step
   const Problem& problem() const { return *scene.problem; }
 };
 
@@ -89,27 +110,116 @@ const Moment& moment(const std::string& scene, int n) {
   Moment& m = place->second;
   if (!is_new) return m;
   m.scene = built_scene(scene, {{"n", n}});
-  const double h = scene == "drape" ? 0.005 : std::min(0.001, 1.0 / n);
-  State state = m.scene.start;
+  m.h = scene == "drape" ? 0.005 : std::min(0.001, 1.0 / n);
+  m.state = m.scene.start;
   const auto stepper = make_stepper("fast_projection", m.scene.problem, {});
-  const int wanted = n > 200000 ? 4 : 40;
+  const int wanted = n > (scene == "drape" ? 150 : 200000) ? 4 : 40;
   int steps = 0;
-  while (steps < wanted && stepper->advance(state, h)) ++steps;
+  while (steps < wanted && stepper->advance(m.state, m.h)) ++steps;
   if (steps < wanted)
     std::fprintf(stderr, "kernels: %s:%d: step %d was refused\n", scene.c_str(), n, steps + 1);
   WorkCounters work;
-  unconstrained_step(m.problem(), state, h, m.x0, work);
+  unconstrained_step(m.problem(), m.state, m.h, m.x0, work);
   return m;
 }
 
 Counter rate(double each) { return Counter(each, Counter::kIsIterationInvariantRate); }
-void per_edge(benchmark::State& state, int edges) {
-  state.SetItemsProcessed(state.iterations() * edges);
-  state.counters["s_per_edge"] =
-      Counter(edges, Counter::kIsIterationInvariantRate | Counter::kInvert);
+Counter average(double all) { return Counter(all, Counter::kAvgIterations); }
+
+void per_item(benchmark::State& state, int items, const char* what = "s_per_edge") {
+  state.SetItemsProcessed(state.iterations() * items);
+  state.counters[what] = Counter(items, Counter::kIsIterationInvariantRate | Counter::kInvert);
 }
 
-// ---- Assembly, factorization and back-substitution of J W J^T ----
+// ---- Passes over all edges or vertices ----
+
+void edge_pass(benchmark::State& state, bool gradients, const std::string& scene, int n) {
+  const Moment& m = moment(scene, n);
+  const EdgeConstraints edges(m.problem(), 1);  // nothing violates: the whole pass
+  if (!edges.permissible(m.x0)) return state.SkipWithError("leaves early");
+  Eigen::Matrix3Xd u(3, edges.count());
+  Eigen::VectorXd c(edges.count());
+  while (state.KeepRunning()) {
+    benchmark::DoNotOptimize(gradients ? edges.linearize(m.x0, u, c) : edges.permissible(m.x0));
+    benchmark::ClobberMemory();
+  }
+  per_item(state, edges.count());
+}
+
+void vertex_pass(benchmark::State& state, bool collision, const std::string& scene, int n) {
+  const Moment& m = moment(scene, n);
+  const Problem& problem = m.problem();
+  Positions x = m.x0;
+  WorkCounters work;
+  std::optional<Contacts> contacts;
+  if (collision) contacts.emplace(problem);
+  while (state.KeepRunning()) {
+    if (collision) {
+      x = m.x0;
+      contacts->begin(m.state.x, m.state.time, m.h);
+      contacts->push_out(x, work);
+    } else {
+      unconstrained_step(problem, m.state, m.h, x, work);
+    }
+    benchmark::ClobberMemory();
+  }
+  per_item(state, problem.vertices(), "s_per_vertex");
+  if (collision) state.counters["contacts"] = average(static_cast<double>(work.contacts));
+}
+
+std::unique_ptr<VelocityFilter> filter(const Problem& problem, const std::string& method,
+                                       double passes) {
+  const Backend& row = *find_backend(method);
+  BackendOptions options{.settings = complete_settings(row, {})};
+  options.settings["max_iterations"] = passes;
+  // A pass over yarns alone.
+  if (const auto sweeps = options.settings.find("sweeps"); sweeps != options.settings.end())
+    sweeps->second = 0.0;
+  return row.make_filter(problem, options, Along::edges);
+}
+
+// Passes over a cloth stretched by a fifth, so that nearly every edge is corrected. A call that may
+// make no pass costs the checks, the refusal and the clock: its time is subtracted.
+// own: bytes that are read of an edge; coordinate: of a coordinate of a vertex; transfers: how
+// often a visit reads or writes one.
+struct Traffic {
+  std::string method;
+  std::size_t own, coordinate, transfers;
+};
+
+void strain_pass(benchmark::State& state, const Traffic& traffic, int n) {
+  const Moment& m = moment("drape", n);
+  constexpr int passes = 10;
+  const auto some = filter(m.problem(), traffic.method, passes),
+             none = filter(m.problem(), traffic.method, 0);
+  const Positions stretched = 1.2 * m.x0;
+  Positions x = stretched;
+  WorkCounters work;
+  double total = 0;
+  while (state.KeepRunning()) {
+    x = stretched;
+    const double begin = thread_seconds();
+    benchmark::DoNotOptimize(none->apply(m.state.x, m.h, x, work));
+    const double middle = thread_seconds();
+    benchmark::DoNotOptimize(some->apply(m.state.x, m.h, x, work));
+    const double seconds = (thread_seconds() - middle) - (middle - begin);
+    state.SetIterationTime(seconds);
+    total += seconds;
+  }
+  const int visits = passes * m.problem().constraints();
+  per_item(state, visits);
+  const auto bytes = static_cast<double>(traffic.own + traffic.transfers * traffic.coordinate),
+             all = static_cast<double>(traffic.own * m.problem().constraints() +
+                                       3 * traffic.coordinate * m.problem().vertices());
+  const double arithmetic = division_seconds(), memory = bytes / read_bandwidth(all);
+  state.counters["bytes_per_edge"] = bytes;
+  state.counters["least_by_arithmetic"] = arithmetic;
+  state.counters["least_by_memory"] = memory;
+  state.counters["floor_ratio"] = average(total / visits / std::max(arithmetic, memory));
+  state.counters["corrected"] = average(static_cast<double>(work.edge_projections) / visits);
+}
+
+// ---- Assembly, factorization and back-substitution: of J W J^T, and of ICD's saddle point ----
 
 // J W J^T at x0 in the solver's order, not yet factored.
 struct Linearized {
@@ -134,7 +244,7 @@ void assembly(benchmark::State& state, const std::string& scene, int n) {
     l.system.schur().assemble(l.u, l.solver->values());
     benchmark::ClobberMemory();
   }
-  per_edge(state, m.problem().constraints());
+  per_item(state, m.problem().constraints());
   state.counters["entries"] = l.system.schur().pattern().entries();
 }
 
@@ -153,7 +263,7 @@ void linear_solver(benchmark::State& state, const std::string& name, bool solve,
     }
     benchmark::ClobberMemory();
   }
-  per_edge(state, m.problem().constraints());
+  per_item(state, m.problem().constraints());
   state.counters["nnz_L"] = l.solver->factor_nonzeros();
   if (solve) {
     const double bytes = l.solver->factor_nonzeros() * sizeof(double);
@@ -165,21 +275,47 @@ void linear_solver(benchmark::State& state, const std::string& name, bool solve,
 }
 
 template <class Body, class... Arguments>
-void add(const std::string& name, const Body& body, const Arguments&... arguments) {
-  benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
-    body(state, arguments...);
-  })->Unit(benchmark::kMicrosecond);
+benchmark::internal::Benchmark* add(const std::string& name, const Body& body,
+                                    const Arguments&... arguments) {
+  return benchmark::RegisterBenchmark(name.c_str(),
+                                      [=](benchmark::State& state) { body(state, arguments...); })
+      ->Unit(benchmark::kMicrosecond);
 }
 
-void register_all(const std::string& scene, const std::vector<int>& sizes,
-                  const std::vector<std::string>& solvers) {
-  for (const int n : sizes) {
-    const std::string at = "/" + scene + ":" + std::to_string(n);
-    add("assembly" + at, assembly, scene, n);
-    for (const std::string& name : solvers) {
-      add("factor/" + name + at, linear_solver, name, false, scene, n);
-      add("solve/" + name + at, linear_solver, name, true, scene, n);
-    }
+void register_steps(const std::string& scene, int n) {
+  const std::string at = "/" + scene + ":" + std::to_string(n);
+  add("unconstrained_step" + at, vertex_pass, false, scene, n);
+  add("edge_pass" + at, edge_pass, true, scene, n);
+  add("strain_check" + at, edge_pass, false, scene, n);
+  if (scene != "drape") return;
+  add("collision_pass" + at, vertex_pass, true, scene, n);
+  // Own: vertices, rest length, masses and bounds; the edge at the base; the rows of a yarn.
+  for (const Traffic& traffic : std::initializer_list<Traffic>{
+           {"gauss_seidel", 2 * sizeof(int) + 4 * sizeof(double), sizeof(double), 12},
+           {"gauss_seidel_colored", 4 * sizeof(float), sizeof(float), 12},
+           {"jacobi", 4 * sizeof(float), sizeof(float), 24},
+           {"yarn_projection", 3 * 7 * sizeof(double), sizeof(double), 12}})
+    add("strain_pass/" + traffic.method + at, strain_pass, traffic, n)->UseManualTime();
+}
+
+void register_linear_systems(const std::string& scene, int n, const std::vector<std::string>& spd) {
+  const std::string at = "/" + scene + ":" + std::to_string(n);
+  add("assembly" + at, assembly, scene, n);
+  for (const std::string& name : spd) {
+    add("factor/" + name + at, linear_solver, name, false, scene, n);
+    add("solve/" + name + at, linear_solver, name, true, scene, n);
+  }
+}
+
+void register_all() {
+  const std::vector<std::string> spd{"cholmod_supernodal", "multifrontal", "multifrontal_mixed"};
+  for (const int n : {80, 1000, 100000, 1000000}) {
+    register_steps("chain", n);
+    register_linear_systems("chain", n, {"tridiagonal"});
+  }
+  for (const int n : {15, 31, 71, 101}) {
+    register_steps("drape", n);
+    register_linear_systems("drape", n, spd);
   }
 }
 
@@ -195,9 +331,7 @@ int main(int argc, char** argv) try {
   argc = static_cast<int>(end - argv);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  harness::kernels::register_all("chain", {80, 1000, 100000, 1000000}, {"tridiagonal"});
-  harness::kernels::register_all("drape", {15, 31, 71, 101},
-                                 {"cholmod_supernodal", "multifrontal", "multifrontal_mixed"});
+  harness::kernels::register_all();
   const harness::TimingLock lock(wait);
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
