@@ -9,7 +9,8 @@ namespace harness {
 // Above this strain a run has diverged: edges are no longer what they were by any count.
 constexpr double diverged_strain = 10;
 
-// Strain of an edge: |d| / l - 1, over the edge's limit_scale if the problem has one. All infinite if a position is not finite.
+// Strain of an edge: |d| / l - 1, over the edge's limit_scale if the problem has one. All infinite
+// if a position is not finite.
 struct StrainRange {
   double most = 0;       // largest |strain|
   double stretch = 0;    // largest strain, at least 0
