@@ -1,6 +1,7 @@
 // bench --sweep strain|resolution|step|stability, and the sweeps of a suite.
 #include <set>
 
+#include "harness/base/statistics.h"
 #include "harness/base/timing_lock.h"
 #include "harness/cli/command.h"
 #include "harness/points/context.h"
