@@ -76,6 +76,7 @@ Coverage coverage_of(const Runs& runs) {
     found.occasions = std::max(found.occasions, static_cast<int>(p.result().times().size()));
   for (int day = 0; found.occasions > 2 && day < found.occasions; ++day) {
     std::vector<std::vector<double>> times;
+    times.reserve(best.size());
     for (const Point& p : best) times.push_back(values_without(p.result().times(), day));
     const double scatter = scatter_of(times);
     for (const auto& [place, here] : grouped(best, place_of))

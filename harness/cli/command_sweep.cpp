@@ -287,6 +287,7 @@ struct RepeatCommand {
     Journal journal(file);
     begin(journal, document, context);
     std::vector<PointResult> points;
+    points.reserve(best.size());
     for (const auto& [row, point] : best) points.push_back(point);
     Progress progress;
     NoiseProbe noise_probe;

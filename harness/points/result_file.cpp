@@ -250,6 +250,7 @@ std::optional<PairNoise> pair_noise(const std::vector<PointResult>& points,
     if (const auto twin = first.find(place); twin != first.end())
       pairs.emplace(twin->second, point);
   std::vector<double> distances;
+  distances.reserve(pairs.size());
   for (const auto& [twin, point] : pairs)
     distances.push_back(std::abs(std::log(point->seconds() / twin->seconds())));
   if (distances.empty()) return {};

@@ -388,6 +388,27 @@ ParameterInfos with_cloth_parameters(const ParameterInfos& own, const ClothDefau
   return joined({own, fabric_parameters(cloth), {duration_info(duration)}});
 }
 
+// Sides that run along v of the texture; without one, none.
+static std::set<Side> weft_of(const ClothMesh& mesh) {
+  std::set<Side> weft;
+  for (std::size_t q = 0; q < mesh.along_u.size(); ++q)
+    for (const std::size_t k : {0, 2})
+      weft.insert(side_of(mesh.quads[q], mesh.along_u[q] ? k + 1 : k));
+  return weft;
+}
+
+// weft_limit: of weft over that of warp; the tighter one is the run's.
+static void constrain(Draft& draft, const ClothMesh& mesh, const std::set<Side>& sides,
+                      const std::set<Side>& weft, double weft_limit) {
+  for (const auto& [a, b] : sides) {
+    if (mesh.held[a] && mesh.held[b]) continue;
+    draft.constrain(a, b, (mesh.vertices[a] - mesh.vertices[b]).norm());
+    if (weft_limit != 1)
+      draft.parts.limit_scale.push_back((weft.contains({a, b}) ? weft_limit : 1) /
+                                        std::min(weft_limit, 1.0));
+  }
+}
+
 Draft cloth_draft(const ClothMesh& mesh, const SceneParameters& p) {
   const auto length = [&](int a, int b) { return (mesh.vertices[a] - mesh.vertices[b]).norm(); };
   const auto held = [&](auto... vertices) { return (mesh.held[vertices] && ...); };
@@ -405,19 +426,9 @@ Draft cloth_draft(const ClothMesh& mesh, const SceneParameters& p) {
     parts.mass.push_back(p.at("density") * area[v] + value_or_zero(p, "line_density") * rope[v]);
     if (p.at("drag") > 0) parts.drag.push_back(p.at("drag") * area[v]);
   }
-  std::set<Side> weft;
-  for (std::size_t q = 0; q < mesh.along_u.size(); ++q)
-    for (const std::size_t k : {0, 2})
-      weft.insert(side_of(mesh.quads[q], mesh.along_u[q] ? k + 1 : k));
-  const double weft_limit = p.contains("weft_limit") ? p.at("weft_limit") : 1;
+  const std::set<Side> weft = weft_of(mesh);
   const std::set<Side> yarn_sides = constrained_sides(mesh);
-  for (const auto& [a, b] : yarn_sides) {
-    if (held(a, b)) continue;
-    draft.constrain(a, b, length(a, b));
-    if (weft_limit != 1)
-      parts.limit_scale.push_back((weft.contains({a, b}) ? weft_limit : 1) /
-                                  std::min(weft_limit, 1.0));
-  }
+  constrain(draft, mesh, yarn_sides, weft, p.contains("weft_limit") ? p.at("weft_limit") : 1);
   if (p.at("shear") > 0) {
     inextensible::Springs springs;
     const auto join = [&](int a, int b) {

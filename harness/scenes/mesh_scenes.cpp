@@ -188,7 +188,7 @@ inextensible::Pose pose_between(const MeshFile& body, const MeshFile& there) {
     return Eigen::Map<const Positions>(file.vertices.data()->data(), 3, n);
   };
   const Eigen::MatrixXd motion = Eigen::umeyama(points(body), points(there), false);
-  const inextensible::Pose pose{motion.topLeftCorner<3, 3>(), motion.topRightCorner<3, 1>()};
+  inextensible::Pose pose{motion.topLeftCorner<3, 3>(), motion.topRightCorner<3, 1>()};
   for (std::size_t v = 0; v < body.vertices.size(); ++v)
     if ((pose(body.vertices[v]) - there.vertices[v]).norm() >
         1e-4 * there.vertices[v].norm() + 1e-6)
