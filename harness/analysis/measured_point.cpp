@@ -68,9 +68,8 @@ Coverage coverage_of(const Runs& runs) {
     return std::tuple(p.scene(), p.sweep(), p.spec().scene_parameters, p.strain_limit());
   };
   std::vector<Point> best;
-  std::ranges::copy_if(runs.points, std::back_inserter(best), [](const Point& p) {
-    return p.ok() && (p.result().best || !p.result().best_at_errors.empty());
-  });
+  std::ranges::copy_if(runs.points, std::back_inserter(best),
+                       [](const Point& p) { return p.result().best_somewhere(); });
   Coverage found;
   for (const Point& p : best)
     found.occasions = std::max(found.occasions, static_cast<int>(p.result().times().size()));

@@ -48,8 +48,8 @@ class Point {
   double noise_, scatter_;
 };
 
-// Of a's time to b's. Where both were timed on several occasions, the interval is that of another
-// day; otherwise it is that of their samples.
+// The ratio of a's time to b's. Where both were timed on several occasions, the interval is that of
+// another day; otherwise it is that of their samples.
 Ratio ratio(const Point& a, const Point& b);
 
 // How well intervals hold on another day. Every occasion is compared with the interval that the
@@ -58,8 +58,8 @@ struct Coverage {
   int ratios = 0, outside = 0;
   int occasions = 0;  // most of any point
 };
-// Of all pairs of best points in one place.
 struct Runs;
+// It counts all pairs of best points in one place.
 Coverage coverage_of(const Runs& runs);
 // A sentence, "" for a single occasion.
 std::string text(const Coverage& coverage);

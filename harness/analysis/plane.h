@@ -70,7 +70,7 @@ std::vector<Plane> planes_of(const Runs& runs);
 // The cell at the limit next to 1 % and the tightest level, down to the headline's, that has an
 // answer; at any motion if none has.
 const Cell& headline_of(const Plane& plane);
-// Of its resolution sweep; other sweeps have one size.
+// Whether it is the largest of its resolution sweep; other sweeps have one size.
 bool is_largest(const Plane& plane, const std::vector<Plane>& planes);
 
 // ---- The answers in words, as the terminal, pages and figures print them ----

@@ -158,7 +158,7 @@ double scatter_of(const std::vector<std::vector<double>>& times) {
   for (const auto& logs : rest)
     for (std::size_t k = 0; k < occasions; ++k)
       squares += std::pow(logs[k] - by_occasion[k] / programs, 2);
-  // Of a single time; a ratio has two.
+  // The squares are those of single times; a ratio has two.
   return std::sqrt(2 * squares / ((programs - 1) * static_cast<double>(occasions - 1)));
 }
 

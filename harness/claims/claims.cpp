@@ -129,9 +129,10 @@ std::vector<std::string> ids_of(const std::vector<Curve>& curves) {
 
 Verdict at_questions(const std::function<Verdict(const Question&)>& judge) {
   const std::pair<std::string, Verdict> ways[]{
-      {"by strain alone", judge({any_motion, false, true})},
-      {"at an error of at most 2 %", judge({headline_error, false, true})},
-      {"the same, each method in its best stepper", judge({headline_error, true, true})}};
+      {"by strain alone", judge({.tighter = true})},
+      {"at an error of at most 2 %", judge({.level = headline_error, .tighter = true})},
+      {"the same, each method in its best stepper",
+       judge({.level = headline_error, .any_stepper = true, .tighter = true})}};
   Verdict all{ways[0].second.verdict, "", {}};
   bool any = false;
   for (const auto& [words, way] : ways) {

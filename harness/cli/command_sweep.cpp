@@ -106,7 +106,8 @@ struct SweepCommand : SweepOptions, OutputOptions {
         if (!part.empty() && all.find(one) == std::string::npos) append(all, one);
       }
     if (!all.empty())
-      std::cerr << "bench: left out for what a solver does not take: " << all << '\n';
+      std::cerr << "bench: left out, because a solver does not take a part of the scene: " << all
+                << '\n';
   }
 
   void report_missing_references(const std::vector<Search>& searches,
@@ -223,19 +224,24 @@ struct RepeatCommand {
     add_no_wait(command, no_wait);
   }
 
-  // The rows of the document that are timed again.
-  static std::map<std::size_t, PointResult> best_points(const json& document,
-                                                        const std::string& file) {
-    std::map<std::size_t, PointResult> best;
+  // What is timed again, and the rows of the document that it is from.
+  struct Best {
+    std::vector<std::size_t> rows;
+    std::vector<PointResult> points;
+  };
+
+  static Best best_of(const json& document, const std::string& file) {
+    Best best;
     for (std::size_t i = 0; i < document.at("points").size(); ++i) {
       const PointResult point = point_of(document.at("points")[i]);
-      if (!point.ok() || (!point.best && point.best_at_errors.empty())) continue;
+      if (!point.best_somewhere()) continue;
       if (!find_backend(point.spec.solver))
         throw UsageError("'" + file + "' has runs of '" + point.spec.solver +
                          "', which this program does not know: load it with --plugin");
-      best.emplace(i, point);
+      best.rows.push_back(i);
+      best.points.push_back(point);
     }
-    if (best.empty()) throw UsageError("'" + file + "' has no best points to be timed again");
+    if (best.rows.empty()) throw UsageError("'" + file + "' has no best points to be timed again");
     return best;
   }
 
@@ -253,7 +259,7 @@ struct RepeatCommand {
 
   // Adds the occasion to the document.
   static void add(json& document, const json& context, const std::optional<PairNoise>& noise,
-                  const std::map<std::size_t, PointResult>& timed) {
+                  const Best& timed) {
     json& occasions = document["context"]["occasions"];
     if (occasions.is_null()) occasions = json::array();
     occasions.push_back({{"date", context.at("date")},
@@ -263,11 +269,13 @@ struct RepeatCommand {
                          {"noise", noise ? json(noise->q95) : json()}});
     const auto occasion = static_cast<double>(occasions.size());
     std::vector<std::vector<double>> all;
-    for (const auto& [row, more] : timed) {
-      PointResult point = point_of(document.at("points")[row]);
+    for (std::size_t i = 0; i < timed.rows.size(); ++i) {
+      json& row = document["points"][timed.rows[i]];
+      PointResult point = point_of(row);
+      const PointResult& more = timed.points[i];
       if (!more.samples.empty())
         point.occasions.push_back({occasion, more.seconds(), quantile(more.samples, 0.5)});
-      document["points"][row] = row_of(point);
+      row = row_of(point);
       auto& times = all.emplace_back();
       for (const auto& [unused, seconds] : point.times()) times.push_back(seconds);
     }
@@ -277,48 +285,44 @@ struct RepeatCommand {
   int run() const {
     json document = read_result(file);
     if (!is_sweep(document) || !is_timed(document) || !document.value("complete", true))
-      throw UsageError("'" + file + "' is no complete, timed result of a sweep over strain, " +
+      throw UsageError("'" + file + "' is not a complete, timed result of a sweep over strain, " +
                        "resolution or step");
-    auto best = best_points(document, file);
+    Best best = best_of(document, file);
     const Suite suite = document.at("context").at("suite");
     const TimingLock lock(!no_wait);
     const json context = machine_context();
     warn_if_busy(context);
     Journal journal(file);
     begin(journal, document, context);
-    std::vector<PointResult> points;
-    points.reserve(best.size());
-    for (const auto& [row, point] : best) points.push_back(point);
     Progress progress;
     NoiseProbe noise_probe;
     std::vector<Samples> samples;
     try {
-      samples = time_again(suite, points, shown(progress),
+      samples = time_again(suite, best.points, shown(progress),
                            journaled(watched(isolated(run_point, 0), noise_probe, true), journal));
     } catch (const Interrupted&) {
       std::cerr << "bench: interrupted; the same command continues from here\n";
       return interrupted_exit;
     }
     progress.clear();
-    for (std::size_t i = 0; i < points.size(); ++i) static_cast<Samples&>(points[i]) = samples[i];
+    std::size_t lost = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      static_cast<Samples&>(best.points[i]) = samples[i];
+      lost += samples[i].samples.empty();
+    }
     const std::string same = document.at("context").at("suite").value("same", "");
-    const auto noise = pair_noise(points, same);
+    const auto noise = pair_noise(best.points, same);
     if (const std::string why = noise ? why_not_quotable(*noise) : ""; !why.empty()) {
       journal.remove();
       std::cerr << "bench: not added, '" << file << "' stays as it was: " << why << '\n';
       return cannot_decide;
     }
-    std::size_t i = 0, lost = 0;
-    for (auto& [row, point] : best) {
-      point = points[i++];
-      lost += point.samples.empty();
-    }
     add(document, context, noise, best);
     write_atomically(file, result_text(document));
     journal.remove();
     std::cout << file << ": occasion " << document["context"]["occasions"].size() + 1
-              << "; best points timed: " << best.size() - lost;
-    if (lost > 0) std::cout << "; that did not end well this time: " << lost;
+              << "; best points timed: " << best.rows.size() - lost;
+    if (lost > 0) std::cout << "; runs that did not end well this time: " << lost;
     const json scatter = document["context"]["scatter"];
     if (scatter.is_number())
       std::cout << "; a ratio of two times varies by "

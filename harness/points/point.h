@@ -153,6 +153,7 @@ struct PointResult : Samples, RunOutcome {
   std::vector<OccasionTime> occasions;  // that came after the one of its samples
 
   bool ok() const { return status == PointStatus::ok; }
+  bool best_somewhere() const { return ok() && (best || !best_at_errors.empty()); }
   double seconds() const;  // the point's time: of its samples, by time_of()
   // By occasion, from 0: that of its samples. Empty: it was not timed.
   std::map<int, double> times() const;

@@ -39,7 +39,7 @@ void add_benchmarks(json& list, const PointResult& point, int family) {
 }
 
 bool counts(const PointResult& point) {
-  return point.ok() && (point.best || !point.best_at_errors.empty() || point.spec.sweep == "step");
+  return point.best_somewhere() || (point.ok() && point.spec.sweep == "step");
 }
 
 // What a point's search for a best step has in common; of a hard case: case and solver.

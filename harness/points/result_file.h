@@ -5,8 +5,6 @@
 
 namespace harness {
 
-struct PairNoise;
-
 // A point as a file has it: measured numbers have six digits, and errors no series. What decides
 // what is run, and from where on, stays exact.
 json row_of(PointResult point);
@@ -16,11 +14,6 @@ json row_of(PointResult point);
 json result_document(json context, const Suite& suite, const std::vector<std::string>& command,
                      bool complete, const std::vector<PointResult>& points,
                      json references = json::array());
-
-// The most noise (PairNoise::q95) of a result, or of an occasion, that may be quoted.
-constexpr double quotable_noise = 0.06;
-// "equal programs differ by 7.1 % here, more than the 6 % ..."; "" if it may be quoted.
-std::string why_not_quotable(const PairNoise& noise);
 
 // As it is written: one point a line.
 std::string result_text(const json& document);
@@ -55,6 +48,11 @@ struct PairNoise {
   double median = 0, q95 = 0;
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PairNoise, pair, places, median, q95)
+
+// The most q95 of a result, or of an occasion, that may be quoted.
+constexpr double quotable_noise = 0.06;
+// "equal programs differ by 7.1 % here, more than the 6 % ..."; "" if it may be quoted.
+std::string why_not_quotable(const PairNoise& noise);
 
 // None where `one` and double_of(one) have no place in common.
 std::optional<PairNoise> pair_noise(const std::vector<PointResult>& points, const std::string& one);

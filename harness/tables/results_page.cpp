@@ -107,8 +107,8 @@ std::vector<Plane> shown_planes(const std::vector<json>& sweeps) {
   return shown;
 }
 
-// Of scenes whose vertices are marked: how far these hang below where they would if nothing
-// stretched.
+// How far marked vertices hang below where they would if nothing stretched, in scenes that have
+// some.
 void print_sags(std::ostream& out, const NamedResult& result) {
   const Runs runs(result.document);
   std::vector<Point> fastest;

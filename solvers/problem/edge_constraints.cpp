@@ -28,9 +28,7 @@ EdgeConstraints::EdgeConstraints(const Problem& problem, double strain_limit,
     inverse_rest_length[k] = 1 / rest_length[k];
     wa[k] = problem.inverse_mass()[a[k]];
     wb[k] = problem.inverse_mass()[b[k]];
-    if (problem.limit_scale().empty()) continue;
-    limit_scale_.push_back(problem.limit_scale()[e]);
-    own_.emplace_back(limit_scale_[k] * strain_limit);
+    if (!problem.limit_scale().empty()) own_.emplace_back(problem.limit_scale()[e] * strain_limit);
   }
 }
 
@@ -101,7 +99,7 @@ EdgeConstraints::Worst EdgeConstraints::worst(const Positions& x) const {
   for (std::size_t k = 0; k < a.size(); ++k) {
     double strain = (x.col(b[k]) - x.col(a[k])).norm() * inverse_rest_length[k] - 1;
     if (!std::isfinite(strain)) strain = std::numeric_limits<double>::infinity();
-    const double over = std::abs(strain) / (own_.empty() ? 1 : limit_scale_[k]);
+    const double over = std::abs(strain) / (own_.empty() ? 1 : std::sqrt(own_[k].high) - 1);
     if (over > most) {
       most = over;
       worst = {problem_edge(static_cast<int>(k)), strain};

@@ -97,7 +97,6 @@ class EdgeConstraints {
 
   std::vector<int> order_;
   std::vector<PermissibleSquares> own_;  // an edge; empty: limits do not differ
-  std::vector<double> limit_scale_;      // as the problem's, in this order
 };
 
 }  // namespace inextensible

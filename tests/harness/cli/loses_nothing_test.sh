@@ -108,7 +108,7 @@ for p, q in zip(was, now):
     assert bool(q.pop("occasions")) == (p["status"] == "ok" and (p["best"] or bool(p["best_at_errors"]))), q["id"]
     assert p.pop("occasions") == [] and p == q, q["id"]'
 python3 -c 'import json; d = json.load(open("whole.json")); d["complete"] = False; json.dump(d, open("part.json", "w"))'
-refused "no complete, timed result" repeat part.json
+refused "not a complete, timed result" repeat part.json
 cp again.json before.json
 "$BENCH_BINARY" repeat again.json --no-wait >/dev/null 2>&1 &
 while kill -0 "$!" && ! [[ -e again.json.journal && $(wc -l <again.json.journal) -ge 3 ]]; do sleep 0.01; done
