@@ -486,16 +486,14 @@ struct Check {
   double timeout = 120;              // s
 };
 
-constexpr Check checks[] = {
-    {"ordinary runs", ordinary_runs},
-    {"momentum", momentum},
-    {"refusal", refusal},
-    {"permissible candidate", permissible_candidate},
-    {"determinism", determinism},
-    {"consistency", consistency},
-    {"motion in space", motion_in_space},
-    {"hard cases", all_hard_cases, 3600},
-};
+constexpr Check checks[] = {{"ordinary runs", ordinary_runs},
+                            {"momentum", momentum},
+                            {"refusal", refusal},
+                            {"permissible candidate", permissible_candidate},
+                            {"determinism", determinism},
+                            {"consistency", consistency},
+                            {"motion in space", motion_in_space},
+                            {"hard cases", all_hard_cases, 3600}};
 
 }  // namespace
 

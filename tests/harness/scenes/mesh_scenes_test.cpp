@@ -279,8 +279,7 @@ TEST(MeshScene, WhatCanBeNoClothIsRefusedInALine) {
       {scene_of("seam", two + "v 0 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nf 1 2 3 4\nf 5 6 7 8\n"),
        "in 2 pieces, 1 of them pinned nowhere, as that of vertex 5; corners"},
       {scene_of("fan", two + "v 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 2 5\n"),
-       "between vertices 1 and 2 belongs to more than two faces"},
-  };
+       "between vertices 1 and 2 belongs to more than two faces"}};
   for (const auto& [scene, part] : cases)
     EXPECT_TRUE(refuses([&name = scene] { find_scene(name); }, part)) << scene;
   EXPECT_THROW((void)with_mesh_parts("drape", {{"pins", "y > 1"}}), UsageError);
