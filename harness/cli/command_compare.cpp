@@ -197,9 +197,8 @@ struct Ab : CompareOptions {
     for (const auto& [option, value] :
          {config.empty() ? std::pair("--profile", profile) : std::pair("--config", config),
           std::pair("--solver", solver), std::pair("--scene", scene), std::pair("--filter", filter),
-          std::pair("--exclude", exclude)}) {
+          std::pair("--exclude", exclude)})
       if (!value.empty()) words.insert(words.end(), {option, value});
-    }
     const ProgramResult ran = before.run(words, sweep_timeout);
     if (ran.exit_code == usage_error) throw UsageError(Program::own_words(ran));
     if (ran.exit_code != success)

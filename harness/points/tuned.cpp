@@ -70,12 +70,11 @@ void tune(Contestants& all, const Tuned& tuned, const std::string& kind,
     if (!entry) continue;
     const auto fixed = given.find(contestant.solver);
     contestant.settings_at = entry->settings_at();
-    for (SettingsAt& at : contestant.settings_at) {
+    for (SettingsAt& at : contestant.settings_at)
       std::erase_if(at.settings, [&](const auto& setting) {
         return contestant.settings.contains(setting.first) ||
                (fixed != given.end() && fixed->second.contains(setting.first));
       });
-    }
     if (std::ranges::all_of(contestant.settings_at,
                             [](const SettingsAt& at) { return at.settings.empty(); }))
       contestant.settings_at.clear();

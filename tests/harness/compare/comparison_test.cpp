@@ -180,10 +180,8 @@ TEST(Gate, IsReadAndRefusedByName) {
   for (const auto& [text, part] :
        {std::pair("{", "'g.json' is not JSON"),
         {R"({"counters": {"names": ["iteration"]}})", "[names][0], \"iteration\": "},
-        {R"({"errors": {"maxstrain": 2}})", "at [errors]: unknown key 'maxstrain'"}}) {
-    const std::string said = refusal_of([&text = text] { parse_gate(text, "g.json"); });
-    EXPECT_NE(said.find(part), std::string::npos) << text << " -> " << said;
-  }
+        {R"({"errors": {"maxstrain": 2}})", "at [errors]: unknown key 'maxstrain'"}})
+    EXPECT_TRUE(refuses([&text = text] { parse_gate(text, "g.json"); }, part)) << text;
   const Gate gate = parse_gate(
       R"({"times": {"count": false}, "counters": {"rule": "rise", "names": ["steps"]}, "errors": {}})",
       "g.json");

@@ -112,7 +112,7 @@ TEST_P(EveryMethod, DependsOnNeitherCoordinatesNorUnits) {
 TEST_P(EveryMethod, SurvivesOverflowAndGoesOnAsIfNothingHadBeen) {
   // BDF2 drops its history where it is given a state that is not its last one.
   const int steps = row.stepper == std::string_view("bdf2") ? 1 : 2;
-  for (const double speed : {1e160, 1e300}) {
+  for (const double speed : {1e160, 1e300})
     for_seeds(seeds, [&](Random& random, std::uint64_t) {
       const auto mesh = random_mesh(random, 4, 4, 1);
       State state = moving_state(random, mesh, 1), straight = state;
@@ -132,7 +132,6 @@ TEST_P(EveryMethod, SurvivesOverflowAndGoesOnAsIfNothingHadBeen) {
         }
       }
     });
-  }
 }
 
 // Graphs from trees to locked ones, masses over six decades, velocities over three, starts on and

@@ -63,10 +63,9 @@ TEST(TriangleCollider, DistanceAndSignAreRightOnAMeshThatIsNotConvex) {
     for (int i = 0; i < testing::trials(3000); ++i, ++all) {
       const Vector3d p = random_vector(random, i % 3 ? 0.8 : 1.2);  // also beyond the grid's box
       double distance = std::numeric_limits<double>::infinity();
-      for (const auto& t : mesh.triangles) {
+      for (const auto& t : mesh.triangles)
         distance = std::min(distance, distance_to_triangle(mesh.vertices[t[0]], mesh.vertices[t[1]],
                                                            mesh.vertices[t[2]], p));
-      }
       const auto found = collider.nearest(p);
       ASSERT_NEAR(std::abs(found.signed_distance), distance, 1e-12) << p.transpose();
       ASSERT_NEAR((found.point - p).norm(), distance, 1e-12);
@@ -112,7 +111,7 @@ TEST(TriangleCollider, PushOutMovesWhatIsInsideToTheSurfaceWhateverTheFriction) 
                                                     {ellipsoid(3), true},
                                                     {two, false},
                                                     {spiky(random, 2), false}};
-    for (const auto& [mesh, convex] : meshes) {
+    for (const auto& [mesh, convex] : meshes)
       for (const double friction : {0.0, 0.3, 10.0}) {
         SCOPED_TRACE(std::to_string(mesh.triangles.size()) + " triangles, friction " +
                      std::to_string(friction));
@@ -144,7 +143,6 @@ TEST(TriangleCollider, PushOutMovesWhatIsInsideToTheSurfaceWhateverTheFriction) 
         EXPECT_GT(inside, testing::trials(100));
         EXPECT_EQ(work.contacts, inside);
       }
-    }
   });
 }
 
