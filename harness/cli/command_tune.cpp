@@ -34,15 +34,6 @@ void write_entries(const std::string& file, Entries& entries) {
   write_atomically(file, document_text(tuned_document(entries)));
 }
 
-void add_places(TunedEntry& entry, const std::vector<TunedPlace>& found) {
-  for (const TunedPlace& place : found) {
-    std::erase_if(entry.places, [&](const TunedPlace& p) {
-      return p.resolution == place.resolution && p.limit == place.limit;
-    });
-    entry.places.push_back(place);
-  }
-}
-
 void print(const TunedEntry& entry) {
   for (const TunedPlace& p : entry.places)
     std::cout << std::left << std::setw(15) << entry.kind << std::setw(35) << entry.solver
@@ -93,13 +84,6 @@ struct Tune {
     return chosen;
   }
 
-  void complete_options() {
-    if (trials > 0) options.budget = options.trials_each = trials;
-    options.interrupted = interrupted;
-    if (own_places()) options.longest_run = std::numeric_limits<double>::infinity();
-    options.tell = [](const std::string& line) { std::cerr << line << '\n'; };
-  }
-
   // Stores the result in `entries`. False: its entry is up to date.
   bool tune_one(const SweepSpec& on, const std::string& name, const Runner& run,
                 Entries& entries) const {
@@ -113,7 +97,12 @@ struct Tune {
             name + " has no settings by today's rule yet: " + tune_command(on.scene, name, out));
       const TunedEntry found = tune_solver(name, on, options, run, &*known);
       print(found);
-      add_places(*known, found.places);
+      for (const TunedPlace& place : found.places) {
+        std::erase_if(known->places, [&](const TunedPlace& p) {
+          return p.resolution == place.resolution && p.limit == place.limit;
+        });
+        known->places.push_back(place);
+      }
       return true;
     }
     if (there && !again) return false;
@@ -133,7 +122,10 @@ struct Tune {
 
   int run() {
     const std::vector<SweepSpec> chosen = scenes();
-    complete_options();
+    if (trials > 0) options.budget = options.trials_each = trials;
+    options.interrupted = interrupted;
+    if (own_places()) options.longest_run = std::numeric_limits<double>::infinity();
+    options.tell = [](const std::string& line) { std::cerr << line << '\n'; };
     (void)solver_pattern(solver);
     if (std::ranges::all_of(
             chosen, [this](const SweepSpec& s) { return chosen_solvers(solver, s).empty(); }))

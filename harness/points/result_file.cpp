@@ -38,10 +38,6 @@ void add_benchmarks(json& list, const PointResult& point, int family) {
   }
 }
 
-bool counts(const PointResult& point) {
-  return point.best_somewhere() || (point.ok() && point.spec.sweep == "step");
-}
-
 // What a point's search for a best step has in common; of a hard case: case and solver.
 std::string owner_of(const json& row) {
   json owner = json::array();
@@ -156,7 +152,8 @@ json result_document(json context, const Suite& suite, const std::vector<std::st
     samples += point.samples.size();
     retaken += point.retaken;
     list.push_back(row_of(point));
-    if (counts(point)) add_benchmarks(benchmarks, point, family++);
+    if (point.best_somewhere() || (point.ok() && point.spec.sweep == "step"))
+      add_benchmarks(benchmarks, point, family++);
   }
   context["retaken_samples"] = {{"samples", samples}, {"retaken", retaken}};
   json document = {{"schema", "inextensible-bench/1"},

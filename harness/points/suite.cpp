@@ -8,12 +8,6 @@
 namespace harness {
 namespace {
 
-void read_limits(const json& object, const std::string& where, SweepSpec& spec) {
-  if (object.contains("limit") == object.contains("limits"))
-    throw UsageError(where + ": give 'limit' or 'limits', for example \"limits\": [0.1, 0.01]");
-  if (object.contains("limit")) spec.limits = {object.at("limit").get<double>()};
-}
-
 void read_steps(const json& steps, const std::string& where, SweepSpec& spec) {
   spec.coarsest = steps.value("coarsest", spec.coarsest);
   spec.finest = steps.value("finest", spec.finest);
@@ -39,7 +33,9 @@ SweepSpec read_sweep(const json& object, const std::string& where, const Tuned* 
   SweepSpec spec = object;
   const auto type = checked_scene(spec.scene, where);
   spec.scene = type->name;  // of a mesh: with its content
-  read_limits(object, where, spec);
+  if (object.contains("limit") == object.contains("limits"))
+    throw UsageError(where + ": give 'limit' or 'limits', for example \"limits\": [0.1, 0.01]");
+  if (object.contains("limit")) spec.limits = {object.at("limit").get<double>()};
   const json steps = object.value("steps", json::object());
   read_steps(steps, where, spec);
   for (const auto& [name, settings] : spec.solver_options) {
