@@ -137,8 +137,7 @@ TEST_P(EveryMethod, SurvivesOverflowAndGoesOnAsIfNothingHadBeen) {
 // Graphs from trees to locked ones, masses over six decades, velocities over three, starts on and
 // off the manifold, steps that are often absurd.
 harness::Trial random_trial(Random& random) {
-  const int n = 8 + static_cast<int>(random() % 9);
-  const int pinned = static_cast<int>(random() % 3);
+  const int n = 8 + static_cast<int>(random() % 9), pinned = static_cast<int>(random() % 3);
   // A framework of n vertices in space has about 3 n degrees of freedom: more edges lock it.
   const int room = n * (n - 1) / 2 - (n - 1) - 1;  // of the complete graph, pins apart
   const int extra = static_cast<int>(random() % static_cast<std::uint64_t>(std::min(2 * n, room)));

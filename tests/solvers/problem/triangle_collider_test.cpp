@@ -10,9 +10,7 @@
 namespace inextensible {
 namespace {
 
-using Eigen::Vector3d;
-using testing::Random;
-using testing::random_vector;
+using Eigen::Vector3d, testing::Random, testing::random_vector;
 
 // An icosphere with every vertex pulled towards the centre by its own factor: spikes and pits.
 TriangleMesh spiky(Random& random, int subdivisions) {
