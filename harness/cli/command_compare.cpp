@@ -177,18 +177,6 @@ struct Ab : CompareOptions {
     CompareOptions::declare(command);
   }
 
-  // Without --gate, counters are reported but fail nothing: the question is about times.
-  Gate gate_of() const {
-    Gate passes = given_gate();
-    if (gate.empty()) {
-      passes.counter_rule = CounterRule::inform;
-      passes.errors.clear();
-    } else if (!passes.times) {
-      throw UsageError("gate '" + gate + "': bench ab is about times");
-    }
-    return passes;
-  }
-
   // The best points of the old program, with the stiffness that it found, for both programs.
   std::vector<PairedPoint> best_points() const {
     const TemporaryFolder folder("ab");
@@ -221,7 +209,14 @@ struct Ab : CompareOptions {
   }
 
   int run() {
-    const Gate passes = gate_of();
+    Gate passes = given_gate();
+    // Without --gate, counters are reported but fail nothing: the question is about times.
+    if (gate.empty()) {
+      passes.counter_rule = CounterRule::inform;
+      passes.errors.clear();
+    } else if (!passes.times) {
+      throw UsageError("gate '" + gate + "': bench ab is about times");
+    }
     for (Program* program : {&before, &after}) {
       program->path = program_named(program->path);
       program->check();

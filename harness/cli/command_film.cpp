@@ -92,14 +92,6 @@ struct Film : SceneOptions {
     return frames;
   }
 
-  void check_format(const std::string& ending) const {
-    if (ending != ".webp" && ending != ".png" && ending != ".obj")
-      throw UsageError("--out '" + out + "': must end in .webp, .png (stills) or .obj");
-    if (!stills.empty() && ending != ".png")
-      throw UsageError("--stills: --out '" + out + "' must end in .png");
-    if (width > 0 && ending == ".obj") throw UsageError("--width: '" + out + "' has no pictures");
-  }
-
   // Impossible scene parameters, or a method that cannot run the scene, are the user's mistake.
   Recording recorded() const {
     Progress progress;
@@ -131,7 +123,11 @@ struct Film : SceneOptions {
                            stills.empty() ? ".webp" : ".png");
     const std::filesystem::path place(out);
     const std::string ending = place.extension().string();
-    check_format(ending);
+    if (ending != ".webp" && ending != ".png" && ending != ".obj")
+      throw UsageError("--out '" + out + "': must end in .webp, .png (stills) or .obj");
+    if (!stills.empty() && ending != ".png")
+      throw UsageError("--stills: --out '" + out + "' must end in .png");
+    if (width > 0 && ending == ".obj") throw UsageError("--width: '" + out + "' has no pictures");
     const bool still = ending == ".png";
     const auto frames = shown_frames(still);  // before anything runs
     check_writable(out);

@@ -26,14 +26,6 @@ std::vector<std::string> chosen_solvers(const std::string& text, const SweepSpec
 
 using Entries = std::vector<TunedEntry>;
 
-void write_entries(const std::string& file, Entries& entries) {
-  std::ranges::stable_sort(entries, {}, [kinds = scene_kinds()](const TunedEntry& entry) {
-    return std::pair(std::ranges::find(kinds, entry.kind) - kinds.begin(),
-                     find_backend(entry.solver));
-  });
-  write_atomically(file, document_text(tuned_document(entries)));
-}
-
 void print(const TunedEntry& entry) {
   for (const TunedPlace& p : entry.places)
     std::cout << std::left << std::setw(15) << entry.kind << std::setw(35) << entry.solver
@@ -140,8 +132,14 @@ struct Tune {
     std::cout
         << "kind           solver                             size  limit   gain   settings\n";
     for (const SweepSpec& on : chosen)
-      for (const std::string& name : chosen_solvers(solver, on))
-        if (tune_one(on, name, run, entries)) write_entries(file, entries);
+      for (const std::string& name : chosen_solvers(solver, on)) {
+        if (!tune_one(on, name, run, entries)) continue;
+        std::ranges::stable_sort(entries, {}, [kinds = scene_kinds()](const TunedEntry& entry) {
+          return std::pair(std::ranges::find(kinds, entry.kind) - kinds.begin(),
+                           find_backend(entry.solver));
+        });
+        write_atomically(file, document_text(tuned_document(entries)));
+      }
     std::cout << "\nwritten:\n" << file << std::endl;
     return success;
   }

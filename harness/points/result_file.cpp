@@ -38,22 +38,16 @@ void add_benchmarks(json& list, const PointResult& point, int family) {
   }
 }
 
-// What a point's search for a best step has in common; of a hard case: case and solver.
-std::string owner_of(const json& row) {
-  json owner = json::array();
-  for (const char* key : {"case", "sweep", "scene", "scene_parameters", "vertices", "contestant",
-                          "solver", "strain_limit"})
-    owner.push_back(row.value(key, json()));
-  return owner.dump();
-}
-
 void add_rows(json& all, const json& more, const json& again, std::set<std::string>& taken) {
   std::set<std::string> here;
   for (const json& row : more) {
     if (!again.is_null() && row.value("contestant", json()) == again) continue;
-    const std::string owner = owner_of(row);
-    if (taken.contains(owner)) continue;
-    here.insert(owner);
+    json owner;  // what a search for a best step has in common; of a hard case: case and solver
+    for (const char* key : {"case", "sweep", "scene", "scene_parameters", "vertices", "contestant",
+                            "solver", "strain_limit"})
+      owner.push_back(row.value(key, json()));
+    if (taken.contains(owner.dump())) continue;
+    here.insert(owner.dump());
     all.push_back(row);
   }
   taken.merge(here);

@@ -61,18 +61,6 @@ SweepSpec read_sweep(const json& object, const std::string& where, const Tuned* 
   return spec;
 }
 
-// One name is one solver, in all sweeps, for it has one place in the legend.
-void check_contestants(const Suite& suite, const std::string& where) {
-  std::map<std::string, std::string> solvers;
-  for (const SweepSpec& sweep : suite.sweeps)
-    for (const Contestant& c : sweep.contestants)
-      if (const auto [place, fresh] = solvers.emplace(c.name, c.solver); place->second != c.solver)
-        throw UsageError(where + ": '" + c.name + "' is solver '" + place->second +
-                         "' in one sweep and '" + c.solver + "' in another");
-  if (!suite.same.empty())
-    check_known("contestant", suite.same, names_of(contestants_of(suite)), where + ": 'same'");
-}
-
 }  // namespace
 
 std::vector<std::string> sweep_kinds() { return {"strain", "resolution", "step"}; }
@@ -115,7 +103,15 @@ Suite suite_of(const json& document, const std::string& path) {
     suite.sweeps.push_back(
         read_sweep(sweep, where + ": sweeps[" + std::to_string(suite.sweeps.size()) + "]",
                    tuned ? &*tuned : nullptr, suite.same));
-  check_contestants(suite, where);
+  // One name is one solver, in all sweeps, for it has one place in the legend.
+  std::map<std::string, std::string> solvers;
+  for (const SweepSpec& sweep : suite.sweeps)
+    for (const Contestant& c : sweep.contestants)
+      if (const auto [place, fresh] = solvers.emplace(c.name, c.solver); place->second != c.solver)
+        throw UsageError(where + ": '" + c.name + "' is solver '" + place->second +
+                         "' in one sweep and '" + c.solver + "' in another");
+  if (!suite.same.empty())
+    check_known("contestant", suite.same, names_of(contestants_of(suite)), where + ": 'same'");
   return suite;
 }
 

@@ -189,12 +189,6 @@ FakeMachine hashing_machine() {
   return machine;
 }
 
-json points_json(const std::vector<PointResult>& points) {
-  json list = json::array();
-  for (const PointResult& point : points) list.push_back(to_json(point));
-  return list;
-}
-
 json header_of(const Suite& suite) {
   return {{"pid", 1}, {"identity", to_json(suite)}, {"context", {{"date", "today"}}}};
 }
@@ -211,7 +205,9 @@ struct JournalTest : ::testing::Test {
     const auto outcome =
         run_sweep(suite, plan(suite, {}), {}, journaled(machine.runner(), journal));
     runs = static_cast<int>(machine.specs.size()) + machine.repetitions;
-    return points_json(outcome.points);
+    json list = json::array();
+    for (const PointResult& point : outcome.points) list.push_back(to_json(point));
+    return list;
   }
 
  private:
