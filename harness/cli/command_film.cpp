@@ -60,20 +60,6 @@ struct Film : SceneOptions {
                    "FILE");
   }
 
-  void complete_film() {
-    film.scene = name();
-    film.parameters = complete_parameters();
-    (void)solver_pattern(solver);                           // refuses what is no solver
-    for (const std::string& part : alternatives(solver)) {  // in the order given
-      const Pattern wanted("--solver", part);
-      for (const auto& backend : backends())
-        if (wanted.matches(backend.name) &&
-            find_contestant(film.solvers, backend.name) == film.solvers.end())
-          film.solvers.push_back({backend.name, backend.name});
-    }
-    tune(film.solvers, read_tuned_up_to_date("tuned.json"), find_scene(film.scene)->kind());
-  }
-
   // The frames drawn: all for a film; for stills those nearest to the given times, or four.
   std::vector<std::size_t> shown_frames(bool still) const {
     const std::size_t last = frames_in(film) - 1;
@@ -117,7 +103,17 @@ struct Film : SceneOptions {
   }
 
   int run() {
-    complete_film();
+    film.scene = name();
+    film.parameters = complete_parameters();
+    (void)solver_pattern(solver);                           // refuses what is no solver
+    for (const std::string& part : alternatives(solver)) {  // in the order given
+      const Pattern wanted("--solver", part);
+      for (const auto& backend : backends())
+        if (wanted.matches(backend.name) &&
+            find_contestant(film.solvers, backend.name) == film.solvers.end())
+          film.solvers.push_back({backend.name, backend.name});
+    }
+    tune(film.solvers, read_tuned_up_to_date("tuned.json"), find_scene(film.scene)->kind());
     if (out.empty())
       out = default_output("film-" + scene.substr(0, scene.find(':')),
                            stills.empty() ? ".webp" : ".png");

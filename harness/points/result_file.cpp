@@ -60,13 +60,6 @@ void add_named(json& all, const json& more) {
       all.push_back(entry);
 }
 
-void add_stability(json& all, const json& more) {
-  for (const char* list : {"largest_steps", "degrees_of_freedom", "same_frame"})
-    all[list].insert(all[list].end(), more.at(list).begin(), more.at(list).end());
-  for (auto& [name, count] : all["counts"].items())
-    count = count.get<long>() + more.at("counts").at(name).get<long>();
-}
-
 // Texts of a file as they may be printed anywhere.
 void make_harmless(json& value) {
   if (value.is_string()) value = harmless(value.get_ref<const std::string&>());
@@ -283,7 +276,11 @@ json joined(const std::vector<json>& documents) {
     if (document.contains("references")) add_named(all["references"], document.at("references"));
     if (own.is_number()) noise = std::fmax(noise, own.get<double>());
     if (!is_timed(document)) all["context"]["timed"] = false;
-    if (!sweep && &document != &documents.front()) add_stability(all, document);
+    if (sweep || &document == &documents.front()) continue;
+    for (const char* list : {"largest_steps", "degrees_of_freedom", "same_frame"})
+      all[list].insert(all[list].end(), document.at(list).begin(), document.at(list).end());
+    for (auto& [name, count] : all["counts"].items())
+      count = count.get<long>() + document.at("counts").at(name).get<long>();
   }
   if (std::isfinite(noise)) all[q95] = noise;
   return all;
