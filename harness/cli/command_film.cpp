@@ -91,17 +91,6 @@ struct Film : SceneOptions {
     }
   }
 
-  int draw_pictures(const Recording& recording, const std::vector<std::size_t>& frames,
-                    bool still) const {
-    const TemporaryFolder folder("film");
-    Progress progress;
-    write_pictures(
-        folder.path(), recording, {frames, width > 0 ? width : default_width, still},
-        [&progress](std::size_t done, std::size_t all) { progress.show(done, all, "pictures"); });
-    progress.clear();
-    return draw("film.py", {folder.path()}, out);
-  }
-
   int run() {
     film.scene = name();
     film.parameters = complete_parameters();
@@ -130,7 +119,15 @@ struct Film : SceneOptions {
     if (ending != ".obj") check_povray();
     const Recording recording = recorded();
     print_times(recording);
-    if (ending != ".obj") return draw_pictures(recording, frames, still);
+    if (ending != ".obj") {
+      const TemporaryFolder pictures("film");
+      Progress progress;
+      write_pictures(
+          pictures.path(), recording, {frames, width > 0 ? width : default_width, still},
+          [&progress](std::size_t done, std::size_t all) { progress.show(done, all, "pictures"); });
+      progress.clear();
+      return draw("film.py", {pictures.path()}, out);
+    }
     const std::string folder = place.has_parent_path() ? place.parent_path().string() : ".";
     for (const FilmRun& run : recording.takes) {
       const std::string own_part =

@@ -8,15 +8,6 @@
 namespace harness {
 namespace {
 
-void read_steps(const json& steps, const std::string& where, SweepSpec& spec) {
-  spec.coarsest = steps.value("coarsest", spec.coarsest);
-  spec.finest = steps.value("finest", spec.finest);
-  spec.every_step = steps.value("all", spec.every_step);
-  spec.refine = steps.value("refine", spec.refine);
-  if (spec.finest > spec.coarsest)
-    throw UsageError(where + ": 'steps': 'finest' is larger than 'coarsest'");
-}
-
 // Impossible values are found before anything runs.
 void fit_steps_to_duration(double duration, bool coarsest_given, SweepSpec& spec) {
   if (!coarsest_given) spec.coarsest = std::min(spec.coarsest, duration);
@@ -37,7 +28,12 @@ SweepSpec read_sweep(const json& object, const std::string& where, const Tuned* 
     throw UsageError(where + ": give 'limit' or 'limits', for example \"limits\": [0.1, 0.01]");
   if (object.contains("limit")) spec.limits = {object.at("limit").get<double>()};
   const json steps = object.value("steps", json::object());
-  read_steps(steps, where, spec);
+  spec.coarsest = steps.value("coarsest", spec.coarsest);
+  spec.finest = steps.value("finest", spec.finest);
+  spec.every_step = steps.value("all", spec.every_step);
+  spec.refine = steps.value("refine", spec.refine);
+  if (spec.finest > spec.coarsest)
+    throw UsageError(where + ": 'steps': 'finest' is larger than 'coarsest'");
   for (const auto& [name, settings] : spec.solver_options) {
     const std::string place = where + ": 'solver_options'";
     check_settings(settings, place, checked_backend(name, place));

@@ -1,6 +1,5 @@
 // The strain-error grid and findings of invented times.
 #include "harness/analysis/plane.h"
-#include "harness/points/result_file.h"
 #include "support/invented_runs.h"
 
 namespace harness::analysis {
