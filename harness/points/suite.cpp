@@ -8,17 +8,6 @@
 namespace harness {
 namespace {
 
-// Impossible values are found before anything runs.
-void fit_steps_to_duration(double duration, bool coarsest_given, SweepSpec& spec) {
-  if (!coarsest_given) spec.coarsest = std::min(spec.coarsest, duration);
-  if (spec.coarsest > duration)
-    throw UsageError(concat("'duration' is ", duration, " s, must be at least the longest step, ",
-                            spec.coarsest, " s ('steps': 'coarsest')"));
-  if (duration / spec.finest > most_steps)
-    throw UsageError(concat("'duration' is ", duration, " s, more than ", most_steps, " steps of ",
-                            spec.finest, " s ('steps': 'finest')"));
-}
-
 SweepSpec read_sweep(const json& object, const std::string& where, const Tuned* tuned,
                      const std::string& same) {
   SweepSpec spec = object;
@@ -43,7 +32,14 @@ SweepSpec read_sweep(const json& object, const std::string& where, const Tuned* 
     const SceneParameters complete = complete_parameters(*type, spec.scene_parameters);
     if (spec.resolutions.empty())
       spec.resolutions = {static_cast<int>(complete.at(type->resolution))};
-    fit_steps_to_duration(complete.at("duration"), steps.contains("coarsest"), spec);
+    const double duration = complete.at("duration");
+    if (!steps.contains("coarsest")) spec.coarsest = std::min(spec.coarsest, duration);
+    if (spec.coarsest > duration)
+      throw UsageError(concat("'duration' is ", duration, " s, must be at least the longest step, ",
+                              spec.coarsest, " s ('steps': 'coarsest')"));
+    if (duration / spec.finest > most_steps)
+      throw UsageError(concat("'duration' is ", duration, " s, more than ", most_steps,
+                              " steps of ", spec.finest, " s ('steps': 'finest')"));
     if (!solvers) spec.contestants = competitors(*type, spec.scene_parameters);
     if (const std::string without = object.value("without", ""); !without.empty())
       std::erase_if(spec.contestants, [drop = Pattern(where + ": 'without'", without)](
