@@ -49,7 +49,8 @@ struct ErrorAtLevel {
 // What each means: measure_fields.
 struct Measures {
   double max_strain = 0, p99_strain = unknown, rms_strain = unknown;
-  double max_strain_after_collision = unknown, kinetic_energy_mean = unknown;
+  double max_strain_after_collision = unknown;
+  double kinetic_energy_mean = unknown;
   double energy_drift = unknown, energy_gain = unknown, energy_rise = unknown;
   std::string reference;
   double trajectory = unknown, trajectory_mean = unknown, trajectory_max = unknown, gap = unknown;
