@@ -178,16 +178,12 @@ static void to_json(json& to, const Cell& cell) {
   }
 }
 
-// Rows that figures show first: methods that are first in a cell, then the paper's six.
-static std::vector<std::string> leaders_of(const Plane& plane) {
-  std::vector<std::string> rows;
-  for (const Cell& cell : plane.cells)
-    if (cell.first()) rows.push_back(cell.first()->row);
-  for (const PaperMethod& method : all_paper_methods) rows.emplace_back(method.name);
-  return in_order(rows, std::identity());
-}
-
 static void to_json(json& to, const Plane& plane) {
+  // Rows that figures show first: methods that are first in a cell, then the paper's six.
+  std::vector<std::string> leaders;
+  for (const Cell& cell : plane.cells)
+    if (cell.first()) leaders.push_back(cell.first()->row);
+  for (const PaperMethod& method : all_paper_methods) leaders.emplace_back(method.name);
   to = {{"scene", plane.scene},
         {"sweep", plane.sweep},
         {"scene_parameters", plane.scene_parameters},
@@ -195,7 +191,7 @@ static void to_json(json& to, const Plane& plane) {
         {"vertices", plane.vertices},
         {"strain_limits", plane.limits},
         {"error_levels", plane.levels},  // any motion, which is infinite, is written as null
-        {"leaders", leaders_of(plane)},
+        {"leaders", in_order(leaders, std::identity())},
         {"cells", plane.cells}};
 }
 
@@ -207,15 +203,6 @@ json time_json(const std::vector<double>& samples) {
   const double least = time_of(samples);
   if (!(least > 0)) return nullptr;
   return {least, samples.size() < 3 ? least : quantile(samples, 0.5)};
-}
-
-json best_json(double x, const Point& point) {
-  const PointResult& p = point.result();
-  return {{"x", x},
-          {"time", time_json(p.samples)},
-          {"filter", time_json(p.filter_samples)},
-          {"step", number(p.spec.step)},
-          {"ladder_end", p.at_ladder_end}};
 }
 
 // Why none of a contestant's runs counts: the letters of their statuses, from the coarsest step to
@@ -249,9 +236,15 @@ json curves_of(const ContestantRoles& roles, const std::vector<Plane>& planes) {
       for (const auto& [panel, level] :
            {std::pair("any", any_motion), {"within", headline_error}}) {
         json& curves = figure[panel];
-        for (const Entry& entry : plane.cell(limit, level).entries)
-          if (!entry.role.again)
-            curves[entry.role.name]["best"].push_back(best_json(x, entry.point));
+        for (const Entry& entry : plane.cell(limit, level).entries) {
+          if (entry.role.again) continue;
+          const PointResult& p = entry.point.result();
+          curves[entry.role.name]["best"].push_back({{"x", x},
+                                                     {"time", time_json(p.samples)},
+                                                     {"filter", time_json(p.filter_samples)},
+                                                     {"step", number(p.spec.step)},
+                                                     {"ladder_end", p.at_ladder_end}});
+        }
         for (const auto& [name, own] : own_runs) {
           const std::string why = failure_letters(own, limit, level);
           if (!why.empty()) curves[name]["failures"].push_back({x, why});

@@ -63,18 +63,6 @@ Cell cell_of(const std::vector<Point>& here, double limit, double level,
   return cell;
 }
 
-// A run that keeps a tighter limit keeps a looser one as well: each contestant's fastest run at the
-// cell's limit or a tighter one counts. cells: by limit from loose to tight, then by level.
-void take_tighter_runs(std::vector<Cell>& cells, std::size_t levels) {
-  for (std::size_t i = cells.size(); i-- > levels;) {
-    const Cell& tight = cells[i];
-    Cell& loose = cells[i - levels];
-    loose.entries.insert(loose.entries.end(), tight.entries.begin(), tight.entries.end());
-    rank(loose.entries);
-    if (loose.first()) loose.empty_because.clear();
-  }
-}
-
 Plane plane_of(const std::vector<Point>& points, const Runs& runs) {
   const PointSpec& one = points.front().spec();
   Plane plane{one.scene,      one.sweep,    one.scene_parameters,
@@ -87,7 +75,15 @@ Plane plane_of(const std::vector<Point>& points, const Runs& runs) {
     for (const double level : plane.levels)
       plane.cells.push_back(cell_of(here, limit, level, runs.roles));
   }
-  take_tighter_runs(plane.cells, plane.levels.size());
+  // A run that keeps a tighter limit keeps a looser one as well: each contestant's fastest run at
+  // the cell's limit or a tighter one counts. Cells go from loose to tight limits, then by level.
+  for (std::size_t i = plane.cells.size(), levels = plane.levels.size(); i-- > levels;) {
+    const Cell& tight = plane.cells[i];
+    Cell& loose = plane.cells[i - levels];
+    loose.entries.insert(loose.entries.end(), tight.entries.begin(), tight.entries.end());
+    rank(loose.entries);
+    if (loose.first()) loose.empty_because.clear();
+  }
   return plane;
 }
 

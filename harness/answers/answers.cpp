@@ -30,18 +30,6 @@ const std::map<std::string, double (*)(const SceneParameters&)> formulas{
      }},
     {"folded_speed", [](const SceneParameters&) { return 1 / std::sqrt(1 - folded_part); }}};
 
-KnownAnswer known_answer_of(const json& entry) {
-  KnownAnswer answer = entry;
-  answer.reading = reading_named(entry.at("reading"));
-  for (int i = 0; i < entry.at("steps").get<int>(); ++i)
-    answer.steps.push_back(std::ldexp(entry.at("first_step").get<double>(), -i));
-  if (const json& exact = entry.at("exact"); exact.is_string())
-    answer.exact = formulas.at(exact)(complete_parameters(*find_scene(answer.scene), answer.given));
-  else
-    answer.exact = exact;
-  return answer;
-}
-
 struct Ending : CalibrationTrial {
   double value = unknown;
 };
@@ -165,8 +153,18 @@ std::span<const KnownAnswer> known_answers() {
   static const std::vector<KnownAnswer> table = [] {
     const std::string path = source_path("configs/answers.json");
     std::vector<KnownAnswer> all;
-    for (const json& entry : parse_document(read_file(path, "file of known answers"), path))
-      all.push_back(known_answer_of(entry));
+    for (const json& entry : parse_document(read_file(path, "file of known answers"), path)) {
+      KnownAnswer answer = entry;
+      answer.reading = reading_named(entry.at("reading"));
+      for (int i = 0; i < entry.at("steps").get<int>(); ++i)
+        answer.steps.push_back(std::ldexp(entry.at("first_step").get<double>(), -i));
+      if (const json& exact = entry.at("exact"); exact.is_string())
+        answer.exact =
+            formulas.at(exact)(complete_parameters(*find_scene(answer.scene), answer.given));
+      else
+        answer.exact = exact;
+      all.push_back(std::move(answer));
+    }
     return all;
   }();
   return table;

@@ -11,15 +11,6 @@ namespace {
 
 std::string check_of(const json& line) { return fnv1a(compact(line)); }
 
-// A line without its check. Throws where it does not pass.
-json checked(const std::string& text) {
-  json line = parse_document(text, "it");
-  const json check = line.value("check", json());
-  line.erase("check");
-  if (check != check_of(line)) throw UsageError("it is not as it was written");
-  return line;
-}
-
 }  // namespace
 
 Journal::Journal(const std::string& out) : path_(out + ".journal") {
@@ -53,7 +44,10 @@ void Journal::read() {
   for (std::size_t end; (end = text.find('\n', length_)) != std::string::npos; length_ = end + 1) {
     ++number;
     try {
-      json line = checked(text.substr(length_, end - length_));
+      json line = parse_document(text.substr(length_, end - length_), "it");
+      const json check = line.value("check", json());
+      line.erase("check");
+      if (check != check_of(line)) throw UsageError("it is not as it was written");
       if (line.contains("header")) {
         header_ = line["header"];
         damage_.clear();

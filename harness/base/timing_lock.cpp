@@ -15,11 +15,6 @@ namespace {
 // Names the process that holds the lock for the programs it starts.
 constexpr const char* holder_variable = "INEXTENSIBLE_TIMING_LOCK";
 
-bool is_for_us(pid_t process) {
-  const char* holder = std::getenv(holder_variable);
-  return holder && process > 0 && std::to_string(process) == holder;
-}
-
 }  // namespace
 
 TimingLock::TimingLock(bool wait) {
@@ -34,7 +29,8 @@ TimingLock::TimingLock(bool wait) {
       throw UsageError("'" + path + "' cannot be locked: " + std::strerror(errno) +
                        "; --untimed goes without");
     const pid_t other = lock_holder(file_.get());
-    if (is_for_us(other)) {
+    const char* ours = std::getenv(holder_variable);
+    if (ours && other > 0 && std::to_string(other) == ours) {
       file_ = OpenFile();
       return;
     }

@@ -23,16 +23,6 @@ Residuals iterated(const Point& p) {
   return {sums.samples, sums.first / n, sums.last / n, sums.change / n};
 }
 
-std::map<double, std::map<double, Point>> iterated_runs(const Points& points, const char* scene) {
-  constexpr int enough = 10;  // samples of a run
-  std::map<double, std::map<double, Point>> by_limit;
-  for (const Point& p : points.all)
-    if (p.scene() == scene && p.sweep() == "step" && p.ok() &&
-        p.contestant() == fast_projection.name && iterated(p).samples >= enough)
-      by_limit[p.strain_limit()].try_emplace(p.step(), p);
-  return by_limit;
-}
-
 // A viewer sees no difference below it: root mean square distance over the cloth's size.
 constexpr double alike = 0.02;
 
@@ -101,8 +91,13 @@ bool calibrated(const Point& p) {
 Verdict residual_order(const Points& points) {
   Verdict found;
   std::vector<Answer> order, later;
+  constexpr int enough = 10;  // samples of a run
   for (const char* scene : {"chain", "drape"}) {
-    const auto by_limit = iterated_runs(points, scene);
+    std::map<double, std::map<double, Point>> by_limit;
+    for (const Point& p : points.all)
+      if (p.scene() == scene && p.sweep() == "step" && p.ok() &&
+          p.contestant() == fast_projection.name && iterated(p).samples >= enough)
+        by_limit[p.strain_limit()].try_emplace(p.step(), p);
     const auto tightest =
         std::ranges::find_if(by_limit, [](const auto& entry) { return entry.second.size() >= 4; });
     if (tightest == by_limit.end()) continue;

@@ -79,23 +79,19 @@ Points::Points(const std::vector<json>& results) {
   }
 }
 
-static std::vector<Point> points_in(const std::vector<Point>& all, const std::string& scene,
-                                    const std::string& sweep, std::optional<double> vertices = {}) {
-  std::vector<Point> chosen;
-  std::ranges::copy_if(all, std::back_inserter(chosen),
-                       [&](const Point& p) { return p.scene() == scene && p.sweep() == sweep; });
-  if (sweep == "resolution" || chosen.empty()) return chosen;
-  const double size =
-      vertices ? *vertices : std::ranges::max(chosen, {}, &Point::vertices).vertices();
-  std::erase_if(chosen, [size](const Point& p) { return p.vertices() != size; });
-  return chosen;
-}
-
 Curve Points::best(const std::string& scene, const std::string& sweep, const std::string& method,
                    const Question& question, std::optional<double> vertices) const {
   const bool strain = sweep == "strain";
+  std::vector<Point> chosen;
+  std::ranges::copy_if(all, std::back_inserter(chosen),
+                       [&](const Point& p) { return p.scene() == scene && p.sweep() == sweep; });
+  if (sweep != "resolution" && !chosen.empty()) {
+    const double size =
+        vertices ? *vertices : std::ranges::max(chosen, {}, &Point::vertices).vertices();
+    std::erase_if(chosen, [size](const Point& p) { return p.vertices() != size; });
+  }
   std::map<double, std::map<std::string, std::vector<Point>>> places;  // tight to loose, or by size
-  for (const Point& p : points_in(all, scene, sweep, vertices)) {
+  for (const Point& p : chosen) {
     const std::string row = roles.of(p.contestant()).row();
     auto& place = places[strain ? p.strain_limit() : p.vertices()];
     if (row == method || (question.any_stepper && row.starts_with(method + "@")))

@@ -48,25 +48,20 @@ Slope slope_of(const std::vector<std::pair<double, Ratio>>& ratios) {
   return slope;
 }
 
-Verdict growth(const Curve& springs, const Curve& fast,
+Verdict growth(const Points& points, const char* sweep,
                Answer (*fast_is_better)(const Slope&, double), std::string (*place)(double)) {
-  const auto ratios = ratios_of(springs, fast);
-  const Slope slope = slope_of(ratios);
-  if (slope.points < 3) return {};
-  Verdict found{verdict_of(fast_is_better(slope, 0)),
-                "slope of springs' time over fast projection's " + text(slope),
-                ids_of({springs, fast})};
-  for (const auto& [x, ratio] : {ratios.front(), ratios.back()})
-    found.measured += ", ratio " + text(ratio) + " at " + place(x);
-  return found;
-}
-
-Verdict growth_at_questions(const Points& points, const char* sweep,
-                            Answer (*fast_is_better)(const Slope&, double),
-                            std::string (*place)(double)) {
-  return at_questions([=, &points](const Question& asked) {
-    return growth(points.best("chain", sweep, implicit_springs.name, asked),
-                  points.best("chain", sweep, fast_projection.name, asked), fast_is_better, place);
+  return at_questions([=, &points](const Question& asked) -> Verdict {
+    const Curve springs = points.best("chain", sweep, implicit_springs.name, asked),
+                fast = points.best("chain", sweep, fast_projection.name, asked);
+    const auto ratios = ratios_of(springs, fast);
+    const Slope slope = slope_of(ratios);
+    if (slope.points < 3) return {};
+    Verdict found{verdict_of(fast_is_better(slope, 0)),
+                  "slope of springs' time over fast projection's " + text(slope),
+                  ids_of({springs, fast})};
+    for (const auto& [x, ratio] : {ratios.front(), ratios.back()})
+      found.measured += ", ratio " + text(ratio) + " at " + place(x);
+    return found;
   });
 }
 
@@ -153,11 +148,11 @@ Answer smaller(const Steps& a, const Steps& b) {
 }  // namespace
 
 Verdict chain_time_over_strain(const Points& points) {
-  return growth_at_questions(points, "strain", below, percent);
+  return growth(points, "strain", below, percent);
 }
 
 Verdict chain_time_over_resolution(const Points& points) {
-  return growth_at_questions(points, "resolution", above, vertices_of);
+  return growth(points, "resolution", above, vertices_of);
 }
 
 Verdict chain_speed(const Points& points) {

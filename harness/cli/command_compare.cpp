@@ -177,18 +177,6 @@ struct Ab : CompareOptions {
     CompareOptions::declare(command);
   }
 
-  // Without --gate, counters are reported but fail nothing: the question is about times.
-  Gate gate_of() const {
-    Gate passes = given_gate();
-    if (gate.empty()) {
-      passes.counter_rule = CounterRule::inform;
-      passes.errors.clear();
-    } else if (!passes.times) {
-      throw UsageError("gate '" + gate + "': bench ab is about times");
-    }
-    return passes;
-  }
-
   // The best points of the old program, with the stiffness that it found, for both programs.
   std::vector<PairedPoint> best_points() const {
     const TemporaryFolder folder("ab");
@@ -197,9 +185,8 @@ struct Ab : CompareOptions {
     for (const auto& [option, value] :
          {config.empty() ? std::pair("--profile", profile) : std::pair("--config", config),
           std::pair("--solver", solver), std::pair("--scene", scene), std::pair("--filter", filter),
-          std::pair("--exclude", exclude)}) {
+          std::pair("--exclude", exclude)})
       if (!value.empty()) words.insert(words.end(), {option, value});
-    }
     const ProgramResult ran = before.run(words, sweep_timeout);
     if (ran.exit_code == usage_error) throw UsageError(Program::own_words(ran));
     if (ran.exit_code != success)
@@ -222,7 +209,14 @@ struct Ab : CompareOptions {
   }
 
   int run() {
-    const Gate passes = gate_of();
+    Gate passes = given_gate();
+    // Without --gate, counters are reported but fail nothing: the question is about times.
+    if (gate.empty()) {
+      passes.counter_rule = CounterRule::inform;
+      passes.errors.clear();
+    } else if (!passes.times) {
+      throw UsageError("gate '" + gate + "': bench ab is about times");
+    }
     for (Program* program : {&before, &after}) {
       program->path = program_named(program->path);
       program->check();

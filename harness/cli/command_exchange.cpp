@@ -6,7 +6,6 @@
 #include "harness/judge/trajectory.h"
 #include "harness/points/context.h"
 #include "harness/points/result_file.h"
-#include "harness/points/schema.h"
 #include "harness/scenes/scene_folder.h"
 
 namespace harness {

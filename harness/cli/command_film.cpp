@@ -60,20 +60,6 @@ struct Film : SceneOptions {
                    "FILE");
   }
 
-  void complete_film() {
-    film.scene = name();
-    film.parameters = complete_parameters();
-    (void)solver_pattern(solver);                           // refuses what is no solver
-    for (const std::string& part : alternatives(solver)) {  // in the order given
-      const Pattern wanted("--solver", part);
-      for (const auto& backend : backends())
-        if (wanted.matches(backend.name) &&
-            find_contestant(film.solvers, backend.name) == film.solvers.end())
-          film.solvers.push_back({backend.name, backend.name});
-    }
-    tune(film.solvers, read_tuned_up_to_date("tuned.json"), find_scene(film.scene)->kind());
-  }
-
   // The frames drawn: all for a film; for stills those nearest to the given times, or four.
   std::vector<std::size_t> shown_frames(bool still) const {
     const std::size_t last = frames_in(film) - 1;
@@ -92,14 +78,6 @@ struct Film : SceneOptions {
     return frames;
   }
 
-  void check_format(const std::string& ending) const {
-    if (ending != ".webp" && ending != ".png" && ending != ".obj")
-      throw UsageError("--out '" + out + "': must end in .webp, .png (stills) or .obj");
-    if (!stills.empty() && ending != ".png")
-      throw UsageError("--stills: --out '" + out + "' must end in .png");
-    if (width > 0 && ending == ".obj") throw UsageError("--width: '" + out + "' has no pictures");
-  }
-
   // Impossible scene parameters, or a method that cannot run the scene, are the user's mistake.
   Recording recorded() const {
     Progress progress;
@@ -113,32 +91,43 @@ struct Film : SceneOptions {
     }
   }
 
-  int draw_pictures(const Recording& recording, const std::vector<std::size_t>& frames,
-                    bool still) const {
-    const TemporaryFolder folder("film");
-    Progress progress;
-    write_pictures(
-        folder.path(), recording, {frames, width > 0 ? width : default_width, still},
-        [&progress](std::size_t done, std::size_t all) { progress.show(done, all, "pictures"); });
-    progress.clear();
-    return draw("film.py", {folder.path()}, out);
-  }
-
   int run() {
-    complete_film();
+    film.scene = name();
+    film.parameters = complete_parameters();
+    (void)solver_pattern(solver);                           // refuses what is no solver
+    for (const std::string& part : alternatives(solver)) {  // in the order given
+      const Pattern wanted("--solver", part);
+      for (const auto& backend : backends())
+        if (wanted.matches(backend.name) &&
+            find_contestant(film.solvers, backend.name) == film.solvers.end())
+          film.solvers.push_back({backend.name, backend.name});
+    }
+    tune(film.solvers, read_tuned_up_to_date("tuned.json"), find_scene(film.scene)->kind());
     if (out.empty())
       out = default_output("film-" + scene.substr(0, scene.find(':')),
                            stills.empty() ? ".webp" : ".png");
     const std::filesystem::path place(out);
     const std::string ending = place.extension().string();
-    check_format(ending);
+    if (ending != ".webp" && ending != ".png" && ending != ".obj")
+      throw UsageError("--out '" + out + "': must end in .webp, .png (stills) or .obj");
+    if (!stills.empty() && ending != ".png")
+      throw UsageError("--stills: --out '" + out + "' must end in .png");
+    if (width > 0 && ending == ".obj") throw UsageError("--width: '" + out + "' has no pictures");
     const bool still = ending == ".png";
     const auto frames = shown_frames(still);  // before anything runs
     check_writable(out);
     if (ending != ".obj") check_povray();
     const Recording recording = recorded();
     print_times(recording);
-    if (ending != ".obj") return draw_pictures(recording, frames, still);
+    if (ending != ".obj") {
+      const TemporaryFolder pictures("film");
+      Progress progress;
+      write_pictures(
+          pictures.path(), recording, {frames, width > 0 ? width : default_width, still},
+          [&progress](std::size_t done, std::size_t all) { progress.show(done, all, "pictures"); });
+      progress.clear();
+      return draw("film.py", {pictures.path()}, out);
+    }
     const std::string folder = place.has_parent_path() ? place.parent_path().string() : ".";
     for (const FilmRun& run : recording.takes) {
       const std::string own_part =

@@ -26,23 +26,6 @@ std::vector<std::string> chosen_solvers(const std::string& text, const SweepSpec
 
 using Entries = std::vector<TunedEntry>;
 
-void write_entries(const std::string& file, Entries& entries) {
-  std::ranges::stable_sort(entries, {}, [kinds = scene_kinds()](const TunedEntry& entry) {
-    return std::pair(std::ranges::find(kinds, entry.kind) - kinds.begin(),
-                     find_backend(entry.solver));
-  });
-  write_atomically(file, document_text(tuned_document(entries)));
-}
-
-void add_places(TunedEntry& entry, const std::vector<TunedPlace>& found) {
-  for (const TunedPlace& place : found) {
-    std::erase_if(entry.places, [&](const TunedPlace& p) {
-      return p.resolution == place.resolution && p.limit == place.limit;
-    });
-    entry.places.push_back(place);
-  }
-}
-
 void print(const TunedEntry& entry) {
   for (const TunedPlace& p : entry.places)
     std::cout << std::left << std::setw(15) << entry.kind << std::setw(35) << entry.solver
@@ -93,13 +76,6 @@ struct Tune {
     return chosen;
   }
 
-  void complete_options() {
-    if (trials > 0) options.budget = options.trials_each = trials;
-    options.interrupted = interrupted;
-    if (own_places()) options.longest_run = std::numeric_limits<double>::infinity();
-    options.tell = [](const std::string& line) { std::cerr << line << '\n'; };
-  }
-
   // Stores the result in `entries`. False: its entry is up to date.
   bool tune_one(const SweepSpec& on, const std::string& name, const Runner& run,
                 Entries& entries) const {
@@ -113,7 +89,12 @@ struct Tune {
             name + " has no settings by today's rule yet: " + tune_command(on.scene, name, out));
       const TunedEntry found = tune_solver(name, on, options, run, &*known);
       print(found);
-      add_places(*known, found.places);
+      for (const TunedPlace& place : found.places) {
+        std::erase_if(known->places, [&](const TunedPlace& p) {
+          return p.resolution == place.resolution && p.limit == place.limit;
+        });
+        known->places.push_back(place);
+      }
       return true;
     }
     if (there && !again) return false;
@@ -133,7 +114,10 @@ struct Tune {
 
   int run() {
     const std::vector<SweepSpec> chosen = scenes();
-    complete_options();
+    if (trials > 0) options.budget = options.trials_each = trials;
+    options.interrupted = interrupted;
+    if (own_places()) options.longest_run = std::numeric_limits<double>::infinity();
+    options.tell = [](const std::string& line) { std::cerr << line << '\n'; };
     (void)solver_pattern(solver);
     if (std::ranges::all_of(
             chosen, [this](const SweepSpec& s) { return chosen_solvers(solver, s).empty(); }))
@@ -148,8 +132,14 @@ struct Tune {
     std::cout
         << "kind           solver                             size  limit   gain   settings\n";
     for (const SweepSpec& on : chosen)
-      for (const std::string& name : chosen_solvers(solver, on))
-        if (tune_one(on, name, run, entries)) write_entries(file, entries);
+      for (const std::string& name : chosen_solvers(solver, on)) {
+        if (!tune_one(on, name, run, entries)) continue;
+        std::ranges::stable_sort(entries, {}, [kinds = scene_kinds()](const TunedEntry& entry) {
+          return std::pair(std::ranges::find(kinds, entry.kind) - kinds.begin(),
+                           find_backend(entry.solver));
+        });
+        write_atomically(file, document_text(tuned_document(entries)));
+      }
     std::cout << "\nwritten:\n" << file << std::endl;
     return success;
   }

@@ -157,15 +157,6 @@ std::optional<Pattern> pattern_of(const std::string& option, const std::string& 
 
 namespace {
 
-void cut_ladders(Suite& suite, double finest) {
-  for (SweepSpec& sweep : suite.sweeps) {
-    if (finest > sweep.coarsest)
-      throw UsageError(concat("--finest ", finest, " leaves no step: the ladder of ", sweep.scene,
-                              " begins at ", sweep.coarsest, " s"));
-    sweep.finest = finest;
-  }
-}
-
 // A scene missing from the suite gets a copy of the first sweep of that kind, at its default size.
 void put_in_scene(json& sweeps, const SweepOptions& options) {
   const auto of_kind = [&](const json& s) { return s["sweep"] == options.sweep; };
@@ -243,7 +234,13 @@ Suite load_suite(const SweepOptions& given) {
   if (options.untimed && options.reps > 1)
     throw UsageError("--reps and --untimed exclude each other: without times one run is enough");
   if (options.reps > 0 || options.untimed) suite.reps = std::max(options.reps, 1);
-  if (options.finest > 0) cut_ladders(suite, options.finest);
+  if (const double finest = options.finest; finest > 0)
+    for (SweepSpec& sweep : suite.sweeps) {
+      if (finest > sweep.coarsest)
+        throw UsageError(concat("--finest ", finest, " leaves no step: the ladder of ", sweep.scene,
+                                " begins at ", sweep.coarsest, " s"));
+      sweep.finest = finest;
+    }
   if (options.timeout > 0) suite.timeout = options.timeout;
   // Meaningless times must not stop a run for being slower than another contestant's.
   if (options.untimed) suite.far_behind = std::numeric_limits<double>::infinity();

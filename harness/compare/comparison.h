@@ -26,8 +26,7 @@ struct Gate {
   bool times = true;  // whether times count
   // A time has changed if all three agree.
   double significance = 0.05;  // one-sided Mann-Whitney p below this
-  double median_ratio = 1.05;
-  double minimum_ratio = 1.03;
+  double median_ratio = 1.05, minimum_ratio = 1.03;
   CounterRule counter_rule = CounterRule::exact;
   std::vector<std::string> counters;  // names of `work` in a result file; all of them if empty
   // Largest permitted ratios of new to base; errors that are not listed do not count.
@@ -61,8 +60,7 @@ struct ComparedResult {
   std::string path;                   // of the first file
   nlohmann::json context;             // with the sweeps of all files
   std::vector<std::string> commands;  // that made them
-  bool baseline = false;
-  bool complete = true;
+  bool baseline = false, complete = true;
   std::vector<ComparedPoint> points;
 };
 

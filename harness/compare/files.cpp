@@ -3,7 +3,6 @@
 
 #include "harness/base/table.h"
 #include "harness/compare/comparison.h"
-#include "harness/points/context.h"
 #include "harness/points/result_file.h"
 #include "harness/points/schema.h"
 
@@ -176,19 +175,6 @@ std::string counts(const Comparison& comparison) {
   return counted(comparison.points.size(), "point") + ": " + text;
 }
 
-// Points with too few runs to decide on their times share one note.
-std::vector<std::string> all_notes(const Comparison& comparison) {
-  std::vector<std::string> notes = comparison.notes;
-  const auto& points = comparison.points;
-  const auto too_few = [](const PointChange& point) { return point.too_few; };
-  const auto example = std::ranges::find_if(points, too_few);
-  if (example != points.end())
-    notes.push_back(std::to_string(std::count_if(example, points.end(), too_few)) +
-                    " of the AMBIGUOUS have too few runs, for example " + example->id + ": " +
-                    example->text());
-  return notes;
-}
-
 }  // namespace
 
 void print_comparison(std::ostream& out, const Comparison& comparison) {
@@ -197,7 +183,14 @@ void print_comparison(std::ostream& out, const Comparison& comparison) {
     table.rows.push_back({to_string(row.change), row.sweep + " " + row.id, row.text()});
   print_aligned(out, table);
   if (!table.rows.empty()) out << '\n';
-  for (const std::string& note : all_notes(comparison)) out << "note: " << note << '\n';
+  for (const std::string& note : comparison.notes) out << "note: " << note << '\n';
+  // Points with too few runs to decide on their times share one note.
+  const auto& points = comparison.points;
+  const auto example = std::ranges::find_if(points, &PointChange::too_few);
+  if (example != points.end())
+    out << "note: " << std::ranges::count(points, true, &PointChange::too_few)
+        << " of the AMBIGUOUS have too few runs, for example " << example->id << ": "
+        << example->text() << '\n';
   out << counts(comparison) << std::endl;
 }
 

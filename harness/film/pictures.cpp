@@ -17,6 +17,9 @@ using Eigen::Vector3d;
 using Box = Eigen::AlignedBox3d;
 using Triangles = std::vector<std::array<int, 3>>;
 
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FilmRun, label, strain_limit, step, detail, energy_gained,
+                                   largest_strain, seconds)
+
 namespace {
 
 const std::string povray = "povray";
@@ -297,16 +300,11 @@ void write_pictures(const std::string& folder, const Recording& recording, const
     legend.push_back(
         json::array({std::lround(rgb.x()), std::lround(rgb.y()), std::lround(rgb.z())}));
   }
-  for (const FilmRun& take : recording.takes)
-    takes.push_back({{"label", take.label},
-                     {"strain_limit", take.strain_limit},
-                     {"step", take.step},
-                     {"detail", take.detail},
-                     {"energy_gained", take.energy_gained},
-                     {"frames", take.frames.size()},
-                     {"largest_strain", take.largest_strain},
-                     {"sag", sags(recording.scene, take)},
-                     {"seconds", take.seconds}});
+  for (const FilmRun& take : recording.takes) {
+    json& made = takes.emplace_back(take);
+    made["frames"] = take.frames.size();
+    made["sag"] = sags(recording.scene, take);
+  }
   const json header{
       {"width", spec.width},     {"height", height},
       {"frames", spec.frames},   {"frames_per_second", recording.spec.frames_per_second},

@@ -132,16 +132,15 @@ Contestants read_contestants(const json& solvers, const std::string& where) {
   return all;
 }
 
-void to_json(json& to, const Contestant& contestant) {
-  if (contestant == Contestant{contestant.solver, contestant.solver}) {
-    to = contestant.solver;
+void to_json(json& to, const Contestant& c) {
+  if (c == Contestant{c.solver, c.solver}) {
+    to = c.solver;
     return;
   }
-  to = {
-      {"name", contestant.name}, {"solver", contestant.solver}, {"settings", contestant.settings}};
-  if (!contestant.label.empty()) to["label"] = contestant.label;
-  if (contestant.unranked) to["unranked"] = true;
-  if (!contestant.settings_at.empty()) to["settings_at"] = contestant.settings_at;
+  to = {{"name", c.name}, {"solver", c.solver}, {"settings", c.settings}};
+  if (!c.label.empty()) to["label"] = c.label;
+  if (c.unranked) to["unranked"] = true;
+  if (!c.settings_at.empty()) to["settings_at"] = c.settings_at;
 }
 
 std::string double_of(const std::string& name) { return name + "_again"; }

@@ -150,8 +150,7 @@ std::string difference(const json& was, const json& is) {
   const auto text = [&place](const json& document) {
     return document.contains(place) ? value_text(document.at(place)) : std::string("not there");
   };
-  std::string name = place.to_string().substr(1);
-  return name + " is " + text(is) + ", was " + text(was);
+  return place.to_string().substr(1) + " is " + text(is) + ", was " + text(was);
 }
 
 }  // namespace harness

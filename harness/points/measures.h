@@ -48,23 +48,18 @@ struct ErrorAtLevel {
 
 // What each means: measure_fields.
 struct Measures {
-  double max_strain = 0;
-  double p99_strain = unknown, rms_strain = unknown;
+  double max_strain = 0, p99_strain = unknown, rms_strain = unknown;
   double max_strain_after_collision = unknown;
   double kinetic_energy_mean = unknown;
-  double energy_drift = unknown;
-  double energy_gain = unknown;
-  double energy_rise = unknown;
+  double energy_drift = unknown, energy_gain = unknown, energy_rise = unknown;
   std::string reference;
-  double trajectory = unknown, trajectory_mean = unknown, trajectory_max = unknown;
-  double gap = unknown;
+  double trajectory = unknown, trajectory_mean = unknown, trajectory_max = unknown, gap = unknown;
   int error_samples = 0;
   double error_until = unknown;
   std::string unknown_because;
   std::vector<ErrorSample> error_series;  // of a run; files have error_levels instead
   std::vector<ErrorAtLevel> error_levels;
-  double moved = unknown;
-  double valid_until = unknown;
+  double moved = unknown, valid_until = unknown;
   std::vector<ResidualSample> residuals;
   std::map<std::string, double> sag;
   double rest_speed = unknown;

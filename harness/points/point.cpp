@@ -119,10 +119,9 @@ json to_json(const WorkCounters& work) {
 
 WorkCounters work_of(const json& object) {
   WorkCounters work;
-  for (const auto& counter : inextensible::work_counters) {
+  for (const auto& counter : inextensible::work_counters)
     std::visit([&](const auto member) { object.at(counter.name).get_to(work.*member); },
                counter.member);
-  }
   return work;
 }
 

@@ -38,26 +38,16 @@ void add_benchmarks(json& list, const PointResult& point, int family) {
   }
 }
 
-bool counts(const PointResult& point) {
-  return point.best_somewhere() || (point.ok() && point.spec.sweep == "step");
-}
-
-// What a point's search for a best step has in common; of a hard case: case and solver.
-std::string owner_of(const json& row) {
-  json owner = json::array();
-  for (const char* key : {"case", "sweep", "scene", "scene_parameters", "vertices", "contestant",
-                          "solver", "strain_limit"})
-    owner.push_back(row.value(key, json()));
-  return owner.dump();
-}
-
 void add_rows(json& all, const json& more, const json& again, std::set<std::string>& taken) {
   std::set<std::string> here;
   for (const json& row : more) {
     if (!again.is_null() && row.value("contestant", json()) == again) continue;
-    const std::string owner = owner_of(row);
-    if (taken.contains(owner)) continue;
-    here.insert(owner);
+    json owner;  // what a search for a best step has in common; of a hard case: case and solver
+    for (const char* key : {"case", "sweep", "scene", "scene_parameters", "vertices", "contestant",
+                            "solver", "strain_limit"})
+      owner.push_back(row.value(key, json()));
+    if (taken.contains(owner.dump())) continue;
+    here.insert(owner.dump());
     all.push_back(row);
   }
   taken.merge(here);
@@ -68,13 +58,6 @@ void add_named(json& all, const json& more) {
   for (const json& entry : more)
     if (std::ranges::none_of(all, [&](const json& one) { return one["name"] == entry["name"]; }))
       all.push_back(entry);
-}
-
-void add_stability(json& all, const json& more) {
-  for (const char* list : {"largest_steps", "degrees_of_freedom", "same_frame"})
-    all[list].insert(all[list].end(), more.at(list).begin(), more.at(list).end());
-  for (auto& [name, count] : all["counts"].items())
-    count = count.get<long>() + more.at("counts").at(name).get<long>();
 }
 
 // Texts of a file as they may be printed anywhere.
@@ -156,7 +139,8 @@ json result_document(json context, const Suite& suite, const std::vector<std::st
     samples += point.samples.size();
     retaken += point.retaken;
     list.push_back(row_of(point));
-    if (counts(point)) add_benchmarks(benchmarks, point, family++);
+    if (point.best_somewhere() || (point.ok() && point.spec.sweep == "step"))
+      add_benchmarks(benchmarks, point, family++);
   }
   context["retaken_samples"] = {{"samples", samples}, {"retaken", retaken}};
   json document = {{"schema", "inextensible-bench/1"},
@@ -292,7 +276,11 @@ json joined(const std::vector<json>& documents) {
     if (document.contains("references")) add_named(all["references"], document.at("references"));
     if (own.is_number()) noise = std::fmax(noise, own.get<double>());
     if (!is_timed(document)) all["context"]["timed"] = false;
-    if (!sweep && &document != &documents.front()) add_stability(all, document);
+    if (sweep || &document == &documents.front()) continue;
+    for (const char* list : {"largest_steps", "degrees_of_freedom", "same_frame"})
+      all[list].insert(all[list].end(), document.at(list).begin(), document.at(list).end());
+    for (auto& [name, count] : all["counts"].items())
+      count = count.get<long>() + document.at("counts").at(name).get<long>();
   }
   if (std::isfinite(noise)) all[q95] = noise;
   return all;

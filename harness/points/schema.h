@@ -12,8 +12,7 @@ struct AnswerRow {
   std::string answer, solver;
   double step = 0;         // s
   double value = unknown;  // what was read off; unknown where the run ended early
-  double deviation = unknown;
-  double order = unknown;
+  double deviation = unknown, order = unknown;
   std::string detail;  // why there is no value; empty: there is one
 };
 

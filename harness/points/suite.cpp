@@ -8,40 +8,21 @@
 namespace harness {
 namespace {
 
-void read_limits(const json& object, const std::string& where, SweepSpec& spec) {
+SweepSpec read_sweep(const json& object, const std::string& where, const Tuned* tuned,
+                     const std::string& same) {
+  SweepSpec spec = object;
+  const auto type = checked_scene(spec.scene, where);
+  spec.scene = type->name;  // of a mesh: with its content
   if (object.contains("limit") == object.contains("limits"))
     throw UsageError(where + ": give 'limit' or 'limits', for example \"limits\": [0.1, 0.01]");
   if (object.contains("limit")) spec.limits = {object.at("limit").get<double>()};
-}
-
-void read_steps(const json& steps, const std::string& where, SweepSpec& spec) {
+  const json steps = object.value("steps", json::object());
   spec.coarsest = steps.value("coarsest", spec.coarsest);
   spec.finest = steps.value("finest", spec.finest);
   spec.every_step = steps.value("all", spec.every_step);
   spec.refine = steps.value("refine", spec.refine);
   if (spec.finest > spec.coarsest)
     throw UsageError(where + ": 'steps': 'finest' is larger than 'coarsest'");
-}
-
-// Impossible values are found before anything runs.
-void fit_steps_to_duration(double duration, bool coarsest_given, SweepSpec& spec) {
-  if (!coarsest_given) spec.coarsest = std::min(spec.coarsest, duration);
-  if (spec.coarsest > duration)
-    throw UsageError(concat("'duration' is ", duration, " s, must be at least the longest step, ",
-                            spec.coarsest, " s ('steps': 'coarsest')"));
-  if (duration / spec.finest > most_steps)
-    throw UsageError(concat("'duration' is ", duration, " s, more than ", most_steps, " steps of ",
-                            spec.finest, " s ('steps': 'finest')"));
-}
-
-SweepSpec read_sweep(const json& object, const std::string& where, const Tuned* tuned,
-                     const std::string& same) {
-  SweepSpec spec = object;
-  const auto type = checked_scene(spec.scene, where);
-  spec.scene = type->name;  // of a mesh: with its content
-  read_limits(object, where, spec);
-  const json steps = object.value("steps", json::object());
-  read_steps(steps, where, spec);
   for (const auto& [name, settings] : spec.solver_options) {
     const std::string place = where + ": 'solver_options'";
     check_settings(settings, place, checked_backend(name, place));
@@ -51,7 +32,14 @@ SweepSpec read_sweep(const json& object, const std::string& where, const Tuned* 
     const SceneParameters complete = complete_parameters(*type, spec.scene_parameters);
     if (spec.resolutions.empty())
       spec.resolutions = {static_cast<int>(complete.at(type->resolution))};
-    fit_steps_to_duration(complete.at("duration"), steps.contains("coarsest"), spec);
+    const double duration = complete.at("duration");
+    if (!steps.contains("coarsest")) spec.coarsest = std::min(spec.coarsest, duration);
+    if (spec.coarsest > duration)
+      throw UsageError(concat("'duration' is ", duration, " s, must be at least the longest step, ",
+                              spec.coarsest, " s ('steps': 'coarsest')"));
+    if (duration / spec.finest > most_steps)
+      throw UsageError(concat("'duration' is ", duration, " s, more than ", most_steps,
+                              " steps of ", spec.finest, " s ('steps': 'finest')"));
     if (!solvers) spec.contestants = competitors(*type, spec.scene_parameters);
     if (const std::string without = object.value("without", ""); !without.empty())
       std::erase_if(spec.contestants, [drop = Pattern(where + ": 'without'", without)](
@@ -63,18 +51,6 @@ SweepSpec read_sweep(const json& object, const std::string& where, const Tuned* 
   if (tuned) tune(spec.contestants, *tuned, type->kind(), spec.solver_options);
   add_double(spec.contestants, same);
   return spec;
-}
-
-// One name is one solver, in all sweeps, for it has one place in the legend.
-void check_contestants(const Suite& suite, const std::string& where) {
-  std::map<std::string, std::string> solvers;
-  for (const SweepSpec& sweep : suite.sweeps)
-    for (const Contestant& c : sweep.contestants)
-      if (const auto [place, fresh] = solvers.emplace(c.name, c.solver); place->second != c.solver)
-        throw UsageError(where + ": '" + c.name + "' is solver '" + place->second +
-                         "' in one sweep and '" + c.solver + "' in another");
-  if (!suite.same.empty())
-    check_known("contestant", suite.same, names_of(contestants_of(suite)), where + ": 'same'");
 }
 
 }  // namespace
@@ -119,7 +95,15 @@ Suite suite_of(const json& document, const std::string& path) {
     suite.sweeps.push_back(
         read_sweep(sweep, where + ": sweeps[" + std::to_string(suite.sweeps.size()) + "]",
                    tuned ? &*tuned : nullptr, suite.same));
-  check_contestants(suite, where);
+  // One name is one solver, in all sweeps, for it has one place in the legend.
+  std::map<std::string, std::string> solvers;
+  for (const SweepSpec& sweep : suite.sweeps)
+    for (const Contestant& c : sweep.contestants)
+      if (const auto [place, fresh] = solvers.emplace(c.name, c.solver); place->second != c.solver)
+        throw UsageError(where + ": '" + c.name + "' is solver '" + place->second +
+                         "' in one sweep and '" + c.solver + "' in another");
+  if (!suite.same.empty())
+    check_known("contestant", suite.same, names_of(contestants_of(suite)), where + ": 'same'");
   return suite;
 }
 

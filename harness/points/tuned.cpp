@@ -9,14 +9,6 @@
 namespace harness {
 namespace {
 
-// Two files with the same settings are the same to a sweep, whenever they were found.
-std::string hash_of(const std::vector<TunedEntry>& entries) {
-  std::map<std::string, json> settings;
-  for (const TunedEntry& entry : entries)
-    settings[entry.kind + "/" + entry.solver] = entry.settings_at();
-  return fnv1a(json(settings).dump());
-}
-
 SweepSpec tuning_scene(const char* scene, std::vector<int> sizes, double coarsest, double duration,
                        std::vector<double> limits = {0.02, 0.002, 0.0002}) {
   return {.sweep = "strain",
@@ -55,7 +47,11 @@ Tuned parse_tuned(const std::string& text, const std::string& file) {
       throw UsageError(place + ": " + entry.kind + " and " + entry.solver + " are listed twice");
     tuned.entries.push_back(std::move(entry));
   }
-  tuned.hash = hash_of(tuned.entries);
+  // Two files with the same settings are the same to a sweep, whenever they were found.
+  json settings = json::object();
+  for (const TunedEntry& entry : tuned.entries)
+    settings[entry.kind + "/" + entry.solver] = entry.settings_at();
+  tuned.hash = fnv1a(settings.dump());
   return tuned;
 }
 
@@ -70,12 +66,11 @@ void tune(Contestants& all, const Tuned& tuned, const std::string& kind,
     if (!entry) continue;
     const auto fixed = given.find(contestant.solver);
     contestant.settings_at = entry->settings_at();
-    for (SettingsAt& at : contestant.settings_at) {
+    for (SettingsAt& at : contestant.settings_at)
       std::erase_if(at.settings, [&](const auto& setting) {
         return contestant.settings.contains(setting.first) ||
                (fixed != given.end() && fixed->second.contains(setting.first));
       });
-    }
     if (std::ranges::all_of(contestant.settings_at,
                             [](const SettingsAt& at) { return at.settings.empty(); }))
       contestant.settings_at.clear();

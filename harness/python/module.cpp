@@ -11,13 +11,6 @@ namespace {
 
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-Positions positions_of(const Array& array, int vertices) {
-  if (array.ndim() != 2 || array.shape(0) != vertices || array.shape(1) != 3)
-    throw std::invalid_argument(
-        harness::concat("an array must have the shape (", vertices, ", 3)"));
-  return Eigen::Map<const Positions>(array.data(), 3, vertices);
-}
-
 harness::Scene built(const std::string& name, const py::kwargs& parameters) {
   const auto type = harness::find_scene(name);
   if (!type) throw harness::unknown_name("scene", name, names_of(harness::scene_types()));
@@ -34,7 +27,11 @@ struct Scene {
   }
   const Problem& problem() const { return *scene.problem; }
   Positions positions(const Array& array) const {
-    return positions_of(array, problem().vertices());
+    const int vertices = problem().vertices();
+    if (array.ndim() != 2 || array.shape(0) != vertices || array.shape(1) != 3)
+      throw std::invalid_argument(
+          harness::concat("an array must have the shape (", vertices, ", 3)"));
+    return Eigen::Map<const Positions>(array.data(), 3, vertices);
   }
 
   harness::Scene scene;

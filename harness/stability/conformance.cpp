@@ -431,7 +431,6 @@ Findings motion_in_space(const Examinee& solver) {
   const char* check = "motion in space";
   if (solver.backend.strain_control == StrainControl::none)
     return {not_applicable(check, "it keeps no length")};
-  const SceneParameters given{{"n", 7}};
   const auto type = find_scene("whirling_chain");
   const Case c = short_chain(type->name, 7, 0.00025, 640, 1e-6);
   const Problem& problem = *c.scene.problem;
@@ -441,7 +440,7 @@ Findings motion_in_space(const Examinee& solver) {
   if (driven.end == DriveState::End::refused)
     return {judged(false, check, text("refuses a step: ", driven.result.detail), "an easy scene")};
   const double error = rms_distance(c.scene, end.x,
-                                    type->exact(complete_parameters(*type, given), end.time)),
+                                    type->exact(complete_parameters(*type, {{"n", 7}}), end.time)),
                energy = (total_energy(problem, end) - total_energy(problem, start)) /
                         energy_scale(c.scene),
                spin = (angular_momentum(problem, end) - angular_momentum(problem, start)).y() /
@@ -486,16 +485,14 @@ struct Check {
   double timeout = 120;              // s
 };
 
-constexpr Check checks[] = {
-    {"ordinary runs", ordinary_runs},
-    {"momentum", momentum},
-    {"refusal", refusal},
-    {"permissible candidate", permissible_candidate},
-    {"determinism", determinism},
-    {"consistency", consistency},
-    {"motion in space", motion_in_space},
-    {"hard cases", all_hard_cases, 3600},
-};
+constexpr Check checks[] = {{"ordinary runs", ordinary_runs},
+                            {"momentum", momentum},
+                            {"refusal", refusal},
+                            {"permissible candidate", permissible_candidate},
+                            {"determinism", determinism},
+                            {"consistency", consistency},
+                            {"motion in space", motion_in_space},
+                            {"hard cases", all_hard_cases, 3600}};
 
 }  // namespace
 

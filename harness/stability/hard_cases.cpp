@@ -350,8 +350,7 @@ const std::map<std::string, Trial (*)(double value)> builders{
     {"heavy patch", heavy_patch},
     {"long chain", [](double n) { return with_budget(chain(static_cast<int>(n))); }},
     {"large cloth", [](double n) { return with_budget(hung_cloth(static_cast<int>(n))); }},
-    {"far start", scaled},
-};
+    {"far start", scaled}};
 
 // Numbers that are not finite or are physically impossible: refused at the door.
 struct Impossible {
@@ -363,8 +362,7 @@ constexpr Impossible impossible_numbers[] = {
     {"position", true, [](Draft& m, double v) { m.scene.start.x(1, 2) = v; }},
     {"velocity", true, [](Draft& m, double v) { m.scene.start.v(0, 3) = v; }},
     {"mass", false, [](Draft& m, double v) { m.parts.mass[2] = v; }},
-    {"length", false, [](Draft& m, double v) { m.parts.rest_length[1] = v; }},
-};
+    {"length", false, [](Draft& m, double v) { m.parts.rest_length[1] = v; }}};
 
 }  // namespace
 

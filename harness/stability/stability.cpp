@@ -235,28 +235,19 @@ static void to_json(json& object, const SameFrame& frame) {
             {"stopped", frame.stopped}};
 }
 
-namespace {
-
-json known_json() {
-  json list = json::array();
-  for (const KnownDifference& known : known_differences())
-    for (const std::string& hard_case : known.hard_cases)
-      list.push_back({{"case", hard_case},
-                      {"solver", known.solver},
-                      {"at_fixed_step", known.fixed},
-                      {"outcome", known.outcome},
-                      {"reason", known.reason},
-                      {"mends", known.remedy}});
-  return list;
-}
-
-}  // namespace
-
 json stability_document(json context, const StabilityOutcome& outcome, std::uint64_t seed,
                         const std::vector<std::string>& command) {
   context["command"] = command;
   context["seed"] = seed;
-  json matrix = json::array();
+  json matrix = json::array(), known = json::array();
+  for (const KnownDifference& one : known_differences())
+    for (const std::string& hard_case : one.hard_cases)
+      known.push_back({{"case", hard_case},
+                       {"solver", one.solver},
+                       {"at_fixed_step", one.fixed},
+                       {"outcome", one.outcome},
+                       {"reason", one.reason},
+                       {"mends", one.remedy}});
   for (const auto& cell : outcome.cells) {
     const auto& other = cell.expectation.other;
     json row = to_json(cell.result);
@@ -278,7 +269,7 @@ json stability_document(json context, const StabilityOutcome& outcome, std::uint
           {"legend", legend()},
           {"counts", outcome.counts()},
           {"matrix", std::move(matrix)},
-          {"known_differences", known_json()},
+          {"known_differences", std::move(known)},
           {"largest_steps", outcome.largest_steps},
           {"degrees_of_freedom", outcome.freedom},
           {"same_frame", outcome.same_frames}};

@@ -137,22 +137,18 @@ bool TrialJudge::judge_gain(std::optional<double> gain, double release) {
 
 namespace {
 
-Settings settings_of(const Trial& trial, const Backend& backend) {
-  Settings settings;
-  if (const auto own = trial.settings.find(backend.name); own != trial.settings.end())
-    settings = own->second;
-  if (backend.strain_control == StrainControl::stiffness && std::isfinite(trial.stiffness))
-    settings.try_emplace("stiffness", trial.stiffness);
-  return settings;
-}
-
 // One attempt, at the trial's own step or with smaller ones where it is refused.
 Outcome attempt(const Trial& trial, const Backend& backend, std::uint64_t seed, bool smaller,
                 TrialResult& result) {
   const auto begin = Clock::now();
   inextensible::check_state(*trial.scene.problem, trial.scene.start);
-  const auto stepper = make_stepper(backend.name, trial.scene.problem,
-                                    {trial.strain_limit, seed, settings_of(trial, backend)});
+  Settings settings;
+  if (const auto own = trial.settings.find(backend.name); own != trial.settings.end())
+    settings = own->second;
+  if (backend.strain_control == StrainControl::stiffness && std::isfinite(trial.stiffness))
+    settings.try_emplace("stiffness", trial.stiffness);
+  const auto stepper =
+      make_stepper(backend.name, trial.scene.problem, {trial.strain_limit, seed, settings});
   State state = trial.scene.start;
   TrialJudge judge(trial, backend, *stepper, result);
   const DriveState driven = drive(*stepper, state, {trial.step, trial.steps, smaller ? 10 : 0},

@@ -55,8 +55,7 @@ struct TrialResult {
   std::string detail;
   double smallest_step = unknown, max_strain = unknown;
   double strain_first_second = unknown, strain_last_second = unknown;
-  double energy_gain = unknown, momentum_defect = unknown;
-  double seconds = 0;
+  double energy_gain = unknown, momentum_defect = unknown, seconds = 0;
   WorkCounters work;               // of the last attempt
   Promise broken = Promise::none;  // of a wrong outcome; not in files
 };

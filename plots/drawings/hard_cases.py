@@ -13,8 +13,7 @@ from parts.words import clean, inches, short, shorten
 OUTCOMES = {
     "survived": ("S", "survived", "#FFFFFF"), "survived_smaller": ("s", "survived with smaller steps", "#DCEBF7"),
     "refused": ("R", "refused cleanly", "#B8D0E6"), "timeout": ("T", "took too long", "#F2D38B"), "diverged": ("D", "diverged", "#C2553B"),
-    "wrong": ("W", "wrong: claimed success, and a check says otherwise", ALARM), "crashed": ("C", "took its process with it", "#5C1A00"),
-}
+    "wrong": ("W", "wrong: claimed success, and a check says otherwise", ALARM), "crashed": ("C", "took its process with it", "#5C1A00")}
 GRAVE = ("diverged", "wrong", "crashed")
 CELL_WIDTH, CELL_HEIGHT, LABEL_WIDTH, TEXT_SIZE = 0.27, 0.19, 3.3, 8  # LABEL_WIDTH: of solvers' names
 

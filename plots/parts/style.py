@@ -55,23 +55,20 @@ FAMILIES: tuple[tuple[str, tuple[Look, ...]], ...] = (
     (GREEN, (Look("D", (8, 2), size=4.6), Look("d", (2, 2)))),
     (PURPLE, (Look("X", (3, 1.2), size=6.3),)),
     (BLUE, (Look("o", (), 2.0, 5.5), Look("p", (4, 1), 1.6, 6.5), Look("h", (2, 1, 2, 4), 1.6, 6.5),
-            Look("*", (4, 1, 1, 1), 1.6, 7.5))),
-)
+            Look("*", (4, 1, 1, 1), 1.6, 7.5))))
 MORE_COLORS = (VERMILLION, VIOLET, BROWN, TEAL)
 
 # For families and members beyond these.
 SPARE_LOOKS = (
     Look("P", (2, 1, 2, 4)), Look("*", (6, 1, 1, 1, 1, 1), size=7.5), Look("p", (1, 3)), Look("<", (4, 4)),
-    Look(">", (7, 1.5, 3, 1.5)), Look("d", (2, 2)), Look("H", (10, 3)),
-)
+    Look(">", (7, 1.5, 3, 1.5)), Look("d", (2, 2)), Look("H", (10, 3)))
 
 # Contestants that do not lead: their caption, color and line by origin. Plug-ins, of which a reader asks first, all lead.
 RECEDING: dict[str, tuple[str, str, Dashes]] = {
     "project": ("Blue, pale: this project's", PALE_BLUE, ()),
     "literature": ("Brown, dashed: other published methods", PALE_BROWN, (4, 1.5)),
     "engine": ("Green, dotted: engines", PALE_GREEN, (1, 1)),
-    "paper": ("Grey: the paper's in other time steppers", PALE_GREY, ()),
-}
+    "paper": ("Grey: the paper's in other time steppers", PALE_GREY, ())}
 
 # Applied with matplotlib.rc_context around the drawing; the fixed salt makes the ids in an SVG repeat from run to run.
 # Names come from files: none of them is a formula.
@@ -79,8 +76,7 @@ RC: dict[str, Any] = {
     "font.family": FONT, "font.size": 9.0, "axes.titlesize": 9.0, "axes.labelsize": 9.0,
     "xtick.labelsize": 8.0, "ytick.labelsize": 8.0, "axes.linewidth": 0.7, "axes.spines.right": False,
     "axes.unicode_minus": False, "figure.facecolor": "white", "savefig.facecolor": "white",
-    "svg.hashsalt": "inextensible-bench", "path.simplify": False, "text.parse_math": False,
-}
+    "svg.hashsalt": "inextensible-bench", "path.simplify": False, "text.parse_math": False}
 
 
 def styles_for(names: Iterable[str], result: Result, leaders: set[str] | None = None) -> Styles:

@@ -222,11 +222,9 @@ def errors_of(words: str) -> str:
     errors = {(p["contestant"], step): p["error"]["trajectory"] for p in json_of(ROOT / file)["points"] for step in steps
               if p["strain_limit"] == float(limit) and p["status"] == "ok" and math.isclose(p["step"], step)}
 
-    def text(error: float | None) -> str:
-        return "-" if error is None else f"{100 * error:.2g}"
-
     return markdown(["contestant", *(f"1/{1 / step:g} s" for step in steps)],
-                    [[f"`{c}`", *(text(errors.get((c, step))) for step in steps)] for c in contestants])
+                    [[f"`{c}`", *("-" if (error := errors.get((c, step))) is None else f"{100 * error:.2g}" for step in steps)]
+                     for c in contestants])
 
 
 def claims_of(words: str) -> str:

@@ -53,8 +53,7 @@ def point(contestant: str, sweep: str = "strain", scene: str = "chain", vertices
     errors = {"trajectory": 0.02, "gap": 1e-6, "valid_until": 1.0, **(error or {})}
     return {**given, "sweep": sweep, "scene": scene, "solver": contestant, "contestant": contestant, "vertices": vertices,
             "resolution": vertices, "strain_limit": limit, "max_strain": limit, "step": step, "status": status, "status_detail": "",
-            "duration": 1.0,
-            "id": f"{scene}/{contestant}/n:{vertices}/strain:{limit:g}/h:{step:g}",
+            "duration": 1.0, "id": f"{scene}/{contestant}/n:{vertices}/strain:{limit:g}/h:{step:g}",
             "scene_parameters": {"n": vertices, "gravity": 9.81, "duration": 1.0}, "work": {**given["work"], "steps": 100},
             "seconds_per_simulated_second": timing(seconds) if seconds else None, "error": {**given["error"], **errors},
             "filter_seconds_per_simulated_second": None, "frame_times": [], **more}

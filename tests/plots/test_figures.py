@@ -25,8 +25,7 @@ HOSTILE = {
     "formula": r"$\frac{1}{2$ and $x^$",
     # Escapes, markup, a path, and what turns the direction of writing.
     "signs": "\\n\\x{41} %s {0} $\\alpha$ <script>alert(1)</script>-->]]>&amp; ../../etc/$HOME x \u202eabc",
-    "lines": "one\ntwo\r\nthree\ttab\x00\x07\u2028end", "long": "W" * 500, "words": "wide words " * 50, "blank": " \n ",
-}
+    "lines": "one\ntwo\r\nthree\ttab\x00\x07\u2028end", "long": "W" * 500, "words": "wide words " * 50, "blank": " \n "}
 
 
 def renamed(result: Json, name: str) -> Json:
@@ -64,8 +63,7 @@ def test_no_words_run_out_of_a_figure(pictures: dict) -> None:
     (document([point("shake", vertices=n, limit=limit, best=True, error={"trajectory": 0.2}) for n in (20, 80) for limit in (0.1, 0.01)]),
      ["figure4a-n20", "figure4a-n80", "plane-chain-n20", "plane-chain-n80"]),
     (document([point("shake", scene=scene, best=True, error={"trajectory": 0.2}) for scene in ("a/b", "a:b")]),
-     ["a_b-strain", "a_b-strain-2", "plane-a_b", "plane-a_b-2"]),
-])
+     ["a_b-strain", "a_b-strain-2", "plane-a_b", "plane-a_b-2"])])
 def test_each_figure_has_a_file_of_its_own(result: Json, names: list[str]) -> None:
     assert list(figures.all_figures(analysed(result))) == names
 

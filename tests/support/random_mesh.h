@@ -123,8 +123,7 @@ inline RandomMesh random_chains(Random& random, int chains, double lightest = 1e
   std::vector<int> pins;
   std::vector<Edge> edges;
   for (int chain = 0; chain < chains; ++chain) {
-    const int first = static_cast<int>(mass.size());
-    const int length = 1 + static_cast<int>(random() % 12);
+    const int first = static_cast<int>(mass.size()), length = 1 + static_cast<int>(random() % 12);
     const int pin = first + static_cast<int>(random() % 13);
     for (int v = first; v < first + length; ++v) {
       mass.push_back(std::pow(lightest, uniform(random, 0, 1)));

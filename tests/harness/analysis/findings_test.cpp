@@ -1,6 +1,5 @@
 // The strain-error grid and findings of invented times.
 #include "harness/analysis/plane.h"
-#include "harness/points/result_file.h"
 #include "support/invented_runs.h"
 
 namespace harness::analysis {
@@ -13,14 +12,13 @@ std::string winner(const Cell& cell) {
 }
 
 TEST(Plane, HasTheFastestRunOfEachCell) {
-  const json result = document({
-      run("yarn_projection", 0.1, 0.04, 1, 0.08), run("yarn_projection", 0.1, 0.02, 2, 0.03),
-      run("yarn_projection", 0.1, 0.01, 6, 0.008), run("icd", 0.1, 0.04, 3, 0.015),
-      run("icd_untuned", 0.1, 0.02, 2.5, 0.018), run("shake", 0.1, 0.01, 9, 0.004),
-      run("null", 0.1, 0.04, 0.1, 0),     // does not compete
-      run("icd", 0.1, 0.2, 0.01, 0.004),  // a step longer than a frame
-      run("shake", 0.01, 0.01, 9, 0.03),  // nobody else keeps 1 %
-  });
+  const json result = document(
+      {run("yarn_projection", 0.1, 0.04, 1, 0.08), run("yarn_projection", 0.1, 0.02, 2, 0.03),
+       run("yarn_projection", 0.1, 0.01, 6, 0.008), run("icd", 0.1, 0.04, 3, 0.015),
+       run("icd_untuned", 0.1, 0.02, 2.5, 0.018), run("shake", 0.1, 0.01, 9, 0.004),
+       run("null", 0.1, 0.04, 0.1, 0),       // does not compete
+       run("icd", 0.1, 0.2, 0.01, 0.004),    // a step longer than a frame
+       run("shake", 0.01, 0.01, 9, 0.03)});  // nobody else keeps 1 %
   const auto planes = planes_of(result);
   ASSERT_EQ(planes.size(), 1u);
   const Plane& plane = planes[0];
@@ -152,8 +150,7 @@ TEST(Findings, NameTheFirstItsPriceAndTheBestOfThePaper) {
        "At 1 % strain, motion error at most 5 %, only yarn_projection has a run"},
       {{run("yarn_projection", 0.01, 0.01, 0.05, 0.3)}, "At 1 % strain, whatever the motion, "},
       {{failed},
-       "At 1 % strain, whatever the motion, there is no answer: no run keeps the strain limit."},
-  };
+       "At 1 % strain, whatever the motion, there is no answer: no run keeps the strain limit."}};
   for (const auto& [runs, sentence] : cases) {
     const auto findings = findings_of(planes_of(document(runs)));
     ASSERT_EQ(findings.size(), 1u);

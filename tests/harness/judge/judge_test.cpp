@@ -46,16 +46,12 @@ Measures judged(const std::shared_ptr<const Reference>& reference, double times_
   }
   return judge.finish();
 }
-Measures judged(const std::shared_ptr<const Reference>& reference, double times_as_far, double off,
-                int steps = 5) {
-  return judged(reference, times_as_far, std::vector<double>(steps, off));
-}
 
 // However far off a run is, its error is over the sample times at which 3 gap is at most the level.
 TEST(Judge, CountsTheSameSampleTimesForAllRuns) {
   const auto reference = falling();
   for (const double off : {0.4, 0.01, 0.002, 1e-5}) {
-    const Measures found = judged(reference, 1, off);
+    const Measures found = judged(reference, 1, std::vector(5, off));
     EXPECT_EQ(found.error_samples, 2) << off;
     EXPECT_EQ(found.error_samples, reference->samples_at(headline_error));
     EXPECT_DOUBLE_EQ(found.error_until, 0.08);
@@ -86,16 +82,18 @@ TEST(Judge, ErrorIsTheLargestOverTime) {
 TEST(Judge, KnowsNoErrorWithoutSureSamplesAndOfARunThatEndedEarly) {
   const auto unsure = falling();
   unsure->gap.assign(5, 0.01);
+  const std::vector off(5, 0.4);
   for (const Measures& found :
-       {judged(unsure, 1, 0.4), judged(nullptr, 1, 0.4), judged(falling(), 1, 0.4, 1)}) {
+       {judged(unsure, 1, off), judged(nullptr, 1, off), judged(falling(), 1, {0.4})}) {
     EXPECT_TRUE(std::isnan(found.trajectory));
     EXPECT_NE(found.unknown_because, "");
   }
 }
 
 TEST(Judge, MeasuresHowFarARunHasMoved) {
-  EXPECT_NEAR(judged(falling(), 0.3, 0).moved, 0.3, 1e-12);
-  EXPECT_EQ(judged(falling(), 0, 0).moved, 0);
+  const std::vector never(5, 0.0);
+  EXPECT_NEAR(judged(falling(), 0.3, never).moved, 0.3, 1e-12);
+  EXPECT_EQ(judged(falling(), 0, never).moved, 0);
 }
 
 TEST(Strain, OfEdgesThatAreTooLongAndTooShort) {

@@ -216,10 +216,9 @@ TEST(Mutation, OfTheSettlingDrapeIsDetected) {
     return SceneParameters{{name, factor * own.at(name)}};
   };
   for (const auto& wrong : {times("friction", 0), times("friction", 0.5), times("shear", 0.5),
-                            times("bending", 2), times("drag", 0.5), times("density", 2)}) {
+                            times("bending", 2), times("drag", 0.5), times("density", 2)})
     EXPECT_GT(error_of("settling_drape", drape, wrong, h), headline_error)
         << wrong.begin()->first << ' ' << wrong.begin()->second;
-  }
   // Friction of 0.3 holds the cloth as 0.6 does: docs/measuring.md says so.
   EXPECT_LT(error_of("settling_drape", drape, times("friction", 2), h), headline_error);
 }

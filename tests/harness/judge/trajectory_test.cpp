@@ -6,6 +6,7 @@
 
 #include "harness/base/files.h"
 #include "harness/judge/drive.h"
+#include "harness/run/fake_machine.h"
 #include "harness/run/measure_point.h"
 #include "harness/scenes/scene_folder.h"
 #include "support/refusal.h"
@@ -121,14 +122,7 @@ TEST_F(Exchange, FramesThatAreNotTheScenesAreRefused) {
 
 // The judge's verdict on a solver's own frames is that of the solver's run.
 TEST_F(Exchange, FramesOfARunAreJudgedAsTheRun) {
-  PointSpec spec{
-      .sweep = "strain",
-      .scene = "drape",
-      .scene_parameters = complete_parameters(*find_scene("drape"), {{"n", 5}, {"duration", 0.2}}),
-      .contestant = "gauss_seidel",
-      .solver = "gauss_seidel",
-      .settings = {},
-      .step = 0.01};
+  PointSpec spec = spec_at("drape", {{"n", 5}, {"duration", 0.2}}, "gauss_seidel", 0.01);
   const PointResult run = run_point(spec, {.timed = false});
   auto played = std::make_shared<Trajectory>();
   played->interval = spec.step;

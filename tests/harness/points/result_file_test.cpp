@@ -54,17 +54,15 @@ TEST(ResultFile, OfSweepsFitsTheSchema) {
   // time 0 as faster.
   std::size_t samples = 0;
   for (const PointResult& point : outcome.points)
-    samples +=
-        point.ok() && (point.best || !point.best_at_errors.empty() || point.spec.sweep == "step")
-            ? point.samples.size()
-            : 0;
+    if (point.ok() && (point.best || !point.best_at_errors.empty() || point.spec.sweep == "step"))
+      samples += point.samples.size();
   EXPECT_GT(samples, 0u);
   EXPECT_EQ(document["benchmarks"].size(), samples);
 }
 
 TEST(Schemas, AreThoseOfCommittedFiles) {
   if (inextensible::testing::sanitized) GTEST_SKIP() << "too slow with sanitizers";
-  for (const char* folder : {"results", "results/baseline", "configs"}) {
+  for (const char* folder : {"results", "results/baseline", "configs"})
     for (const auto& entry : std::filesystem::directory_iterator(source_path(folder))) {
       if (entry.path().extension() != ".json") continue;
       const json document = read(entry.path());
@@ -80,10 +78,9 @@ TEST(Schemas, AreThoseOfCommittedFiles) {
         EXPECT_LE(10 * coverage.outside, coverage.ratios) << entry.path();  // 10 % on another day
       }
       if (schema == "suite") {
-        EXPECT_NO_THROW(static_cast<void>(read_suite(entry.path()))) << entry.path();
+        EXPECT_NO_THROW((void)read_suite(entry.path())) << entry.path();
       }
     }
-  }
   EXPECT_NO_THROW(static_cast<void>(read_tuned_up_to_date("tuned.json")));
   EXPECT_NO_THROW(static_cast<void>(read_gate(source_path("configs/gate.json"))));
   const json all = {{"counters", {{"names", counter_names()}}}};
@@ -135,8 +132,7 @@ TEST(ResultFile, RefusesWhatNoRunCanHaveMeasured) {
   const auto refused = [&](const std::string& pointer, const json& value, const char* why) {
     json changed = document;
     changed["points"][place][json::json_pointer(pointer)] = value;
-    const std::string said = refusal_of([&] { (void)parse_result(changed.dump(), "it"); });
-    EXPECT_NE(said.find(why), std::string::npos) << pointer << ": " << said;
+    EXPECT_TRUE(refuses([&] { (void)parse_result(changed.dump(), "it"); }, why)) << pointer;
   };
   refused("/status", "fine", "\"fine\"");
   refused("/work/luck", 1, "unknown key 'luck'");

@@ -88,33 +88,28 @@ struct InventedMachine {
     std::ranges::reverse(sweep.contestants);
     sweep.coarsest = 1.0 / 60;
     sweep.finest = 1.0 / 240;
-    const auto run = [this](const PointSpec& spec, const RunLimits& limits) {
+    const auto take = [this](const PointSpec& spec, const RunLimits& limits) {
       calls.push_back((limits.look        ? "screen "
                        : limits.sample_of ? "repeat "
                                           : "run ") +
                       spec.solver);
       EXPECT_TRUE(!limits.look || limits.hopeless <= 0.1);
-      const double wanted = limits.look ? limits.hopeless : cost(spec);
-      return spend(spec, std::min(wanted, limits.hopeless), limits);
+      const double cost = seconds.at(spec.solver) / (60 * spec.step);
+      const double busy = limits.look ? limits.hopeless : std::min(cost, limits.hopeless);
+      // Time passes in small pieces, and a run asks after each whether it is to stop.
+      for (double spent = 0; spent < busy; spent += 0.01) {
+        latest = clock += 0.01;
+        if (limits.interrupted()) throw Interrupted();
+      }
+      PointResult point = run(spec.solver, spec.step, cost, 0.01);
+      point.spec = spec;
+      if (busy < cost && calls.back().starts_with("run")) point.status = PointStatus::timeout;
+      return point;
     };
     return try_contestants(
         suite, plan(suite, {}), {},
-        {for_seconds, [this] { return clock; }, [this] { return clock >= interrupt_at; }}, {}, run);
-  }
-
- private:
-  double cost(const PointSpec& spec) const { return seconds.at(spec.solver) / (60 * spec.step); }
-
-  // Time passes in small pieces, and a run asks after each whether it is to stop.
-  PointResult spend(const PointSpec& spec, double busy, const RunLimits& limits) {
-    for (double spent = 0; spent < busy; spent += 0.01) {
-      latest = clock += 0.01;
-      if (limits.interrupted()) throw Interrupted();
-    }
-    PointResult point = run(spec.solver, spec.step, cost(spec), 0.01);
-    point.spec = spec;
-    if (busy < cost(spec) && calls.back().starts_with("run")) point.status = PointStatus::timeout;
-    return point;
+        {for_seconds, [this] { return clock; }, [this] { return clock >= interrupt_at; }}, {},
+        take);
   }
 };
 

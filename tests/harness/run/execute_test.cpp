@@ -7,7 +7,6 @@
 
 #include <fstream>
 #include <random>
-#include <thread>
 
 #include "harness/base/child_process.h"
 #include "harness/points/result_file.h"
@@ -89,8 +88,7 @@ TEST(Isolation, ATimeOutIsCountedFromTheLastRestart) {
       [](Heartbeat& heartbeat) {
         for (int i = 0; i < 4; ++i) {
           heartbeat.begin = heartbeat.begin - 30;  // of 60 s and a grace: as if that had passed
-          std::this_thread::sleep_for(
-              std::chrono::milliseconds(200));  // the parent looks meanwhile
+          usleep(200'000);                         // the parent looks meanwhile
           heartbeat.restart();
         }
       },
@@ -191,12 +189,6 @@ FakeMachine hashing_machine() {
   return machine;
 }
 
-json points_json(const std::vector<PointResult>& points) {
-  json list = json::array();
-  for (const PointResult& point : points) list.push_back(to_json(point));
-  return list;
-}
-
 json header_of(const Suite& suite) {
   return {{"pid", 1}, {"identity", to_json(suite)}, {"context", {{"date", "today"}}}};
 }
@@ -213,7 +205,9 @@ struct JournalTest : ::testing::Test {
     const auto outcome =
         run_sweep(suite, plan(suite, {}), {}, journaled(machine.runner(), journal));
     runs = static_cast<int>(machine.specs.size()) + machine.repetitions;
-    return points_json(outcome.points);
+    json list = json::array();
+    for (const PointResult& point : outcome.points) list.push_back(to_json(point));
+    return list;
   }
 
  private:

@@ -24,6 +24,7 @@ struct Walk {
 };
 
 TEST(StepSearch, RunsFromCoarseToFineAsLongAsThatIsOfUse) {
+  const FakeMachine gradual{.seconds = slowing(1.3), .error = error_of_step(4)};
   const std::vector<Walk> walks{
       {"until two rises", {parabola(200)}, {25, 50, 100, 200, 400, 800}},
       {"through failures, until a step works",
@@ -37,19 +38,9 @@ TEST(StepSearch, RunsFromCoarseToFineAsLongAsThatIsOfUse) {
        {25, 50, 100, 200, 400, 800, 200, 400, 800, 100, 50},
        {0.1, 0.01}},
       // 0.5 % is reached at 1/800 s: one more step shows that it does not get faster.
-      {"until the finest level is met",
-       {.seconds = slowing(1.3), .error = error_of_step(4)},
-       {25, 50, 100, 200, 400, 800, 1600}},
-      {"until the suite's own level is met",
-       {.seconds = slowing(1.3), .error = error_of_step(4)},
-       {25, 50, 100, 200, 400},
-       {0.1},
-       0.02},
-      {"for time alone",
-       {.seconds = slowing(1.3), .error = error_of_step(4)},
-       {25, 50, 100},
-       {0.1},
-       1},
+      {"until the finest level is met", gradual, {25, 50, 100, 200, 400, 800, 1600}},
+      {"until the suite's own level is met", gradual, {25, 50, 100, 200, 400}, {0.1}, 0.02},
+      {"for time alone", gradual, {25, 50, 100}, {0.1}, 1},
       {"until the finest level to which the reference is known",
        {.seconds = slowing(1.3), .error = error_of_step(4), .gap = 0.02 / sure_gaps},
        {25, 50, 100, 200, 400}},

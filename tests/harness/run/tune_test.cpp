@@ -211,8 +211,7 @@ TEST(Tune, AnEntryIsRefusedOnceItsRuleHasChanged) {
     EXPECT_EQ(rule_change(other), row.change);
     const std::string file = ::testing::TempDir() + "/tuned.json";
     std::ofstream(file) << tuned_document({other});
-    const std::string message =
-        refusal_of([&file] { static_cast<void>(read_tuned_up_to_date(file)); });
+    const std::string message = refusal_of([&file] { (void)read_tuned_up_to_date(file); });
     EXPECT_NE(message.find(row.change), std::string::npos) << message;
     EXPECT_EQ(message.empty(), row.change.empty()) << message;
   }

@@ -51,18 +51,16 @@ std::string halves(bool from_a, int a, int b, int c, int d) {
 std::string square(int n, const std::function<bool(int, int)>& cut = nullptr) {
   std::ostringstream text;
   text.precision(17);
-  for (int i = 0; i < n; ++i) {
+  for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j)
       text << "v " << static_cast<double>(j) / (n - 1) << ' ' << -static_cast<double>(i) / (n - 1)
            << " 0\n";
-  }
-  for (int i = 0; i + 1 < n; ++i) {
+  for (int i = 0; i + 1 < n; ++i)
     for (int j = 0; j + 1 < n; ++j) {
       const int a = i * n + j + 1, b = a + 1, c = a + n + 1, d = a + n;
       text << (cut ? halves(cut(i, j), a, b, c, d)
                    : concat("f ", a, "//1 ", b, "//1 ", c, "//1 ", d, "//1\n"));
     }
-  }
   return text.str();
 }
 
@@ -279,8 +277,7 @@ TEST(MeshScene, WhatCanBeNoClothIsRefusedInALine) {
       {scene_of("seam", two + "v 0 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nf 1 2 3 4\nf 5 6 7 8\n"),
        "in 2 pieces, 1 of them pinned nowhere, as that of vertex 5; corners"},
       {scene_of("fan", two + "v 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 2 5\n"),
-       "between vertices 1 and 2 belongs to more than two faces"},
-  };
+       "between vertices 1 and 2 belongs to more than two faces"}};
   for (const auto& [scene, part] : cases)
     EXPECT_TRUE(refuses([&name = scene] { find_scene(name); }, part)) << scene;
   EXPECT_THROW((void)with_mesh_parts("drape", {{"pins", "y > 1"}}), UsageError);
@@ -361,7 +358,7 @@ TEST(MeshScene, TheTextureTellsWarpFromWeft) {
   EXPECT_NE(joined_places(built_scene(sheared(true, without))), quads);
   EXPECT_EQ(joined_places(built_scene(sheared(true, diagonal))),
             joined_places(built_scene(sheared(true, without))));
-  for (const bool cut : {false, true}) {
+  for (const bool cut : {false, true})
     for (const double turn : {0.0, other}) {
       const std::string name = sheared(cut, turn);
       for (const int fine : {1, 2}) {
@@ -376,7 +373,6 @@ TEST(MeshScene, TheTextureTellsWarpFromWeft) {
         }
       }
     }
-  }
 }
 
 // A cloth that hangs from its upper edge, with weft upright. Weft may stretch three times as far.
@@ -517,8 +513,7 @@ TEST(MeshScene, BodiesMayBeSeveralOpenAndMoving) {
   const std::string then = two + ";" + file_with("bent.obj", rolled(2, 1));
   EXPECT_TRUE(
       refuses([&] { find_scene(cloth + ",body=" + one + ",body_then=" + then); }, "vertices"));
-  EXPECT_NE(refusal_of([&] { find_scene(cloth + ",thickness=0.1"); }).find("--collider"),
-            std::string::npos);
+  EXPECT_TRUE(refuses([&] { find_scene(cloth + ",thickness=0.1"); }, "--collider"));
   // A sheet below the cloth, which gets a back.
   const std::string sheet =
       file_with("sheet.obj", "v -1 -1.2 -1\nv -1 -1.2 1\nv 1 -1.2 1\nv 1 -1.2 -1\nf 1 2 3 4\n");

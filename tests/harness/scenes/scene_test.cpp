@@ -112,7 +112,7 @@ std::vector<double> step_angles(const char* solver, double h) {
 // Free flight x + (x - x_before), brought back along directions at the end of the step:
 // tan(next angle) = sin(angle) / (2 - cos(angle)).
 TEST(SpinningNet, LosesSpeedByAnExactLawWhereDirectionsAreOfTheEndOfTheStep) {
-  for (const char* solver : {"fast_projection", "icd"}) {
+  for (const char* solver : {"fast_projection", "icd"})
     for (const double h : {0.01, 0.0025}) {
       SCOPED_TRACE(std::string(solver) + ", h = " + std::to_string(h));
       const std::vector<double> angles = step_angles(solver, h);
@@ -124,7 +124,6 @@ TEST(SpinningNet, LosesSpeedByAnExactLawWhereDirectionsAreOfTheEndOfTheStep) {
       // Its differential equation, Omega' = -h Omega^3, to first order in h.
       EXPECT_NEAR(angles.back() / h, turn / std::sqrt(1 + 2 * turn * turn * h), turn * turn * h);
     }
-  }
 }
 
 // The same by methods that go edge by edge, as far as they converge: 0.747 by the law above.

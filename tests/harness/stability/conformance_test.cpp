@@ -84,11 +84,9 @@ const Fault faults[] = {
      [](const Step& s) {
        if (s.problem.pinned().size() == 1 && s.problem.vertices() == 25) s.x.col(20) *= 1.001;
      }},
-    {"gives_up", "steps", When::before,
-     [](const Step& s) {
+    {"gives_up", "steps", When::before, [](const Step& s) {
        if (s.problem.collider()) s.x(0, 0) = std::numeric_limits<double>::quiet_NaN();
-     }},
-};
+     }}};
 
 struct Corrupted final : VelocityFilter {
   Corrupted(const Problem& problem, double limit, const Fault& fault)

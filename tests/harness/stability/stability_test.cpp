@@ -47,8 +47,7 @@ TEST(TrialJudge, SeesWhatOneStepBreaks) {
       {false, "null", [](State& s) { s.x(0, 1) += 0.0101; }, Outcome::survived, ""},
       {false, "null", [](State& s) { s.x(0, 1) = 12; }, Outcome::diverged, "strain"},
       {true, "shake", [](State& s) { s.x(1, 0) = 5e-324; }, Outcome::wrong, "pinned vertex 0"},
-      {false, "shake", [](State& s) { s.v(0, 0) += 1e-6; }, Outcome::wrong, "momentum"},
-  };
+      {false, "shake", [](State& s) { s.v(0, 0) += 1e-6; }, Outcome::wrong, "momentum"}};
   for (const auto& step : steps) {
     const Trial trial = dumbbell(step.pinned);
     State state = trial.scene.start;

@@ -112,7 +112,7 @@ TEST_P(EveryMethod, DependsOnNeitherCoordinatesNorUnits) {
 TEST_P(EveryMethod, SurvivesOverflowAndGoesOnAsIfNothingHadBeen) {
   // BDF2 drops its history where it is given a state that is not its last one.
   const int steps = row.stepper == std::string_view("bdf2") ? 1 : 2;
-  for (const double speed : {1e160, 1e300}) {
+  for (const double speed : {1e160, 1e300})
     for_seeds(seeds, [&](Random& random, std::uint64_t) {
       const auto mesh = random_mesh(random, 4, 4, 1);
       State state = moving_state(random, mesh, 1), straight = state;
@@ -132,14 +132,12 @@ TEST_P(EveryMethod, SurvivesOverflowAndGoesOnAsIfNothingHadBeen) {
         }
       }
     });
-  }
 }
 
 // Graphs from trees to locked ones, masses over six decades, velocities over three, starts on and
 // off the manifold, steps that are often absurd.
 harness::Trial random_trial(Random& random) {
-  const int n = 8 + static_cast<int>(random() % 9);
-  const int pinned = static_cast<int>(random() % 3);
+  const int n = 8 + static_cast<int>(random() % 9), pinned = static_cast<int>(random() % 3);
   // A framework of n vertices in space has about 3 n degrees of freedom: more edges lock it.
   const int room = n * (n - 1) / 2 - (n - 1) - 1;  // of the complete graph, pins apart
   const int extra = static_cast<int>(random() % static_cast<std::uint64_t>(std::min(2 * n, room)));

@@ -44,17 +44,15 @@ refused "did you mean 'symmetric_sweeps'" --plugin "$plugin" --sweep strain --so
 refused "no solver 'symmetric_sweeps'" --sweep strain --solver symmetric_sweeps --out out.json
 # By default an installed bench writes to the current folder; a sweep that names no solvers has the plug-in's among them.
 tiny --exclude 'jacobi|icd|shake|rattle|springs|yarn_projection|adaptive|xpbd|bdf2|colored' --no-plots >sweep.txt 2>&1 || fail "a sweep: $(cat sweep.txt)"
-/usr/bin/python3 - <<'PYTHON' || fail "the sweep's file"
-import json
-document = json.load(open("results/local/pairs-strain.json"))
+holds '
+document = read("results/local/pairs-strain.json")
 plugin, = document["context"]["plugins"]
 assert len(plugin.pop("hash")) == 16, plugin
 assert plugin == {"file": "my_solver.so", "version": "1.0", "solvers": ["symmetric_sweeps"], "optimized": True}, plugin
 best = {p["solver"] for p in document["points"] if p["best"]}
 assert {"symmetric_sweeps", "gauss_seidel", "fast_projection"} <= best, best
 mine = [p for p in document["points"] if p["solver"] == "symmetric_sweeps" and p["best"]][0]
-assert 0 < mine["max_strain"] <= 0.01 and mine["work"]["edge_projections"] > 0, mine
-PYTHON
+assert 0 < mine["max_strain"] <= 0.01 and mine["work"]["edge_projections"] > 0, mine'
 mkdir figures
 tiny --solver 'symmetric_sweeps|gauss_seidel' --out figures/out.json >sweep.txt 2>&1 || fail "a sweep with figures: $(cat sweep.txt)"
 grep -q 'could not be drawn' sweep.txt && fail "no figures: $(cat sweep.txt)"
@@ -65,7 +63,7 @@ ls figures/*.svg >/dev/null || fail "no figures"
 
 # ---- Every verb of an installed bench ----
 tiny --solver fast_projection --no-plots --out small.json >sweep.txt 2>&1 || fail "a small sweep: $(cat sweep.txt)"
-/usr/bin/python3 -c 'import json; print(json.dumps(json.load(open("small.json"))["points"][0]))' >point.txt
+holds 'print(json.dumps(read("small.json")["points"][0]))' >point.txt
 cp installed/share/inextensible/configs/tuned.json .
 
 # use VERB: a small use of it. A verb that is not named here is called alone, and named here if it needs words.
@@ -122,12 +120,10 @@ sound() { printf '%s' "$kinds/libplugin_$1.so"; }
 "$bench" --plugin "$(sound bare)" --sweep strain --profile pairs --reps 1 --filter 'strain:0.0*1/' --solver sound \
   --no-plots --out bare.json >sweep.txt 2>&1 || fail "a solver without collider: $(cat sweep.txt)"
 grep -q 'left out .*drape by sound (' sweep.txt || fail "a scene left out in silence: $(cat sweep.txt)"
-/usr/bin/python3 - <<'PYTHON' || fail "a row that lacks a part"
-import json
-points = [p for p in json.load(open("bare.json"))["points"] if p["solver"] == "sound"]
+holds '
+points = [p for p in read("bare.json")["points"] if p["solver"] == "sound"]
 assert any(p["best"] for p in points if p["scene"] == "chain"), points
-assert not any(p["scene"] == "drape" for p in points), "a suite that names no solvers leaves out those that do not take its scene"
-PYTHON
+assert not any(p["scene"] == "drape" for p in points), "a suite that names no solvers leaves out those that do not take its scene"'
 "$bench" --plugin "$(sound bare)" check --solver sound --quick >check.txt 2>&1
 code=$?
 grep -q '^sound conforms: ' check.txt && [[ $code == 0 ]] || fail "a sound solver without shear and collider: exit $code, $(cat check.txt)"

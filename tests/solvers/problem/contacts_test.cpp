@@ -6,11 +6,7 @@
 namespace inextensible {
 namespace {
 
-using Eigen::Vector3d;
-using testing::Ground;
-using testing::Random;
-using testing::random_vector;
-using testing::uniform;
+using Eigen::Vector3d, testing::Ground, testing::Random, testing::random_vector, testing::uniform;
 
 // Points that fell through a ground: n of them, where they began, and where they would be.
 struct Fallen {
@@ -54,8 +50,8 @@ TEST(Contacts, FrictionTakesFromTheWayWhatCoulombGrants) {
       const double left = depth > 0 ? std::max(0.0, slide.norm() - mu * depth) : slide.norm();
       const Vector3d moved = x.col(v) - fallen.start.col(v), slid = moved - n.dot(moved) * n;
       EXPECT_NEAR((slid - left * slide.normalized()).norm(), 0, 1e-14);
-      EXPECT_NEAR(n.dot(x.col(v) - fallen.candidate.col(v)), 0,
-                  1e-14);  // a plane's push comes later
+      // A plane's push comes later.
+      EXPECT_NEAR(n.dot(x.col(v) - fallen.candidate.col(v)), 0, 1e-14);
     }
   });
 }

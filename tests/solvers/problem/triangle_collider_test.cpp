@@ -10,9 +10,7 @@
 namespace inextensible {
 namespace {
 
-using Eigen::Vector3d;
-using testing::Random;
-using testing::random_vector;
+using Eigen::Vector3d, testing::Random, testing::random_vector;
 
 // An icosphere with every vertex pulled towards the centre by its own factor: spikes and pits.
 TriangleMesh spiky(Random& random, int subdivisions) {
@@ -63,10 +61,9 @@ TEST(TriangleCollider, DistanceAndSignAreRightOnAMeshThatIsNotConvex) {
     for (int i = 0; i < testing::trials(3000); ++i, ++all) {
       const Vector3d p = random_vector(random, i % 3 ? 0.8 : 1.2);  // also beyond the grid's box
       double distance = std::numeric_limits<double>::infinity();
-      for (const auto& t : mesh.triangles) {
+      for (const auto& t : mesh.triangles)
         distance = std::min(distance, distance_to_triangle(mesh.vertices[t[0]], mesh.vertices[t[1]],
                                                            mesh.vertices[t[2]], p));
-      }
       const auto found = collider.nearest(p);
       ASSERT_NEAR(std::abs(found.signed_distance), distance, 1e-12) << p.transpose();
       ASSERT_NEAR((found.point - p).norm(), distance, 1e-12);
@@ -112,7 +109,7 @@ TEST(TriangleCollider, PushOutMovesWhatIsInsideToTheSurfaceWhateverTheFriction) 
                                                     {ellipsoid(3), true},
                                                     {two, false},
                                                     {spiky(random, 2), false}};
-    for (const auto& [mesh, convex] : meshes) {
+    for (const auto& [mesh, convex] : meshes)
       for (const double friction : {0.0, 0.3, 10.0}) {
         SCOPED_TRACE(std::to_string(mesh.triangles.size()) + " triangles, friction " +
                      std::to_string(friction));
@@ -144,7 +141,6 @@ TEST(TriangleCollider, PushOutMovesWhatIsInsideToTheSurfaceWhateverTheFriction) 
         EXPECT_GT(inside, testing::trials(100));
         EXPECT_EQ(work.contacts, inside);
       }
-    }
   });
 }
 

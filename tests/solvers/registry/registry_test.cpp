@@ -115,8 +115,7 @@ struct Recorder final : IterateObserver {
 TEST(Observer, SeesIteratesAndTheirMultipliersAndChangesNothing) {
   testing::for_seeds(4, [&](testing::Random& random, std::uint64_t) {
     const testing::RandomMesh mesh = testing::random_mesh(random, 5, 6, 1);
-    State state{mesh.x, (testing::perturbed(random, mesh, 1) - mesh.x) * 10};
-    State alone = state;
+    State state{mesh.x, (testing::perturbed(random, mesh, 1) - mesh.x) * 10}, alone = state;
     const BackendOptions options{1e-6, 1, {}};
     const auto observed = make_stepper("fast_projection", mesh.problem, options);
     Recorder recorder;

@@ -158,7 +158,7 @@ TEST(ImplicitForces, DampASpringAsTheirStepperDoes) {
 }
 
 TEST(Drag, LetsFallAtTheSpeedAtWhichItBearsTheWeight) {
-  for (const bool implicit : {false, true}) {
+  for (const bool implicit : {false, true})
     for (const char* solver :
          {"fast_projection", "fast_projection@bdf2", "fast_projection@midpoint", "rattle",
           "soft_step", "implicit_springs"}) {
@@ -172,7 +172,6 @@ TEST(Drag, LetsFallAtTheSpeedAtWhichItBearsTheWeight) {
       run(*stepper, state, 0.01, 8);
       for (int i = 0; i < 2; ++i) EXPECT_NEAR(state.v(1, i), -0.5 * g, 1e-5) << solver << implicit;
     }
-  }
 }
 
 }  // namespace

@@ -146,7 +146,7 @@ TEST(SchurComplement, EqualsTheDenseProductInEachTriangleWithAndWithoutContacts)
 
 // SHAKE's matrix, directions at two positions; a tree that is a path has a tridiagonal one.
 TEST(LuSolver, IsBackwardStableOnShakesMatrices) {
-  for (const bool chain : {true, false}) {
+  for (const bool chain : {true, false})
     testing::for_seeds(seeds, [&](testing::Random& random, std::uint64_t seed) {
       SCOPED_TRACE((chain ? "chain, seed " : "graph, seed ") + std::to_string(seed));
       const auto graph =
@@ -168,7 +168,6 @@ TEST(LuSolver, IsBackwardStableOnShakesMatrices) {
       solver->solve(x.data());
       EXPECT_LT((matrix * x - b).norm(), 1e-12 * (matrix.norm() * x.norm() + b.norm()));
     });
-  }
 }
 
 // [1 1 0; 1 2 1; 0 1 1], whose middle row is the sum of the others, and all ones.
