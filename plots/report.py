@@ -4,12 +4,13 @@ figure, and the paper's claims. It needs only a browser and no network.
 
     plots/report.py report.json --out report.html
 
-`bench report` runs it: report.json has the results with their analyses, the findings of all, and the claims decided. page/ has what the
-browser runs. Needs Debian's python3-matplotlib.
+`bench report` runs it: report.json has the results, their sweeps with analyses (several files may be pieces of one), the findings of all, and
+the claims decided. page/ has what the browser runs. Needs Debian's python3-matplotlib.
 """
 
 import argparse
 import base64
+import gzip
 import io
 import json
 import shlex
@@ -32,6 +33,7 @@ from parts.style import RC
 PAGE = Path(__file__).parent / "page"
 SCRIPTS = ("document.js", "table.js")
 FIRST = ("drape", "strain")  # the question that most readers come with
+KINDS = ("strain", "resolution", "step")  # of sweeps, by how many readers ask
 
 
 def table(head: Iterable[str], rows: Iterable[list[str]]) -> str:
@@ -42,14 +44,15 @@ def table(head: Iterable[str], rows: Iterable[list[str]]) -> str:
     return f'<div class="wide" tabindex="0"><table><thead><tr>{columns}</tr></thead><tbody>\n{lines}</tbody></table></div>'
 
 
+def rank(place: Json) -> tuple[bool, int, int]:
+    """The drape over strain comes first, then sweeps by kind, each from the largest size on."""
+    return (place["scene"], place["sweep"]) != FIRST, KINDS.index(place["sweep"]), -place["vertices"]
+
+
 # ---- findings ---------------------------------------------------------------------------------------------------------
 
 def findings(found: list[Json]) -> str:
     """The program's own. The answer that most readers come for, the largest drape over strain, is first and large."""
-    def rank(one: Json) -> tuple[bool, int]:
-        first = (one["scene"], one["sweep"]) == FIRST
-        return not first, -one["vertices"] if first else 0
-
     def items(texts: list[str]) -> str:
         return "<ul>\n" + "".join(f"<li>{text}</li>\n" for text in texts) + "</ul>" if texts else ""
 
@@ -62,13 +65,28 @@ def findings(found: list[Json]) -> str:
 # ---- figures ----------------------------------------------------------------------------------------------------------
 
 def picture(name: str, draw: Callable[[], Figure]) -> str:
-    """A figure as an SVG that cannot run scripts."""
-    figure, svg = draw(), io.StringIO()
+    """A figure as an SVG that cannot run scripts. It is packed, and a script unpacks it."""
+    figure, svg = draw(), io.BytesIO()
     figure.savefig(svg, format="svg", metadata={"Date": None, "Creator": None})
     title = escape(" ".join(figure.texts[0].get_text().split()) if figure.texts else name)
-    name, image = escape(name), base64.b64encode(svg.getvalue().encode()).decode()
-    return (f'<figure id="figure-{name}"><img src="data:image/svg+xml;base64,{image}" alt="{title}" loading="lazy">'
-            f'<figcaption>{title} <a download="{name}.svg" data-of="figure-{name}" href="#figure-{name}">SVG</a></figcaption></figure>\n')
+    name, image = escape(name), base64.b64encode(gzip.compress(svg.getvalue(), mtime=0)).decode()
+    return (f'<figure id="figure-{name}"><img data-packed="{image}" alt="{title}">'
+            f'<figcaption>{title} <a download="{name}.svg" href="#figure-{name}">SVG</a></figcaption></figure>\n')
+
+
+def pictures(sweeps: list[tuple[str, Result]]) -> str:
+    """Of sweeps by rank; figures of all solvers come at the end, behind a line to open."""
+    def order(named: tuple[str, Result]) -> tuple[bool, tuple]:
+        points = named[1].points
+        return len({point["solver"] for point in points}) < 2, min(map(rank, points), default=(True, len(KINDS), 0))
+
+    shown, complete = "", ""
+    with matplotlib.rc_context(RC):
+        for stem, result in sorted(sweeps, key=order):
+            few, every = all_figures(result), all_figures(result, every=True)
+            shown += "".join(picture(f"{stem}-{name}", draw) for name, draw in few.items())
+            complete += "".join(picture(f"{stem}-{name}", draw) for name, draw in every.items() if name not in few)
+    return shown + (f"<details><summary>Figures of all solvers, with their steps and failures</summary>\n{complete}</details>" if complete else "")
 
 
 # ---- the scripts' data, one JSON document: labels of solvers, and a row a point ------------------------------------------
@@ -90,13 +108,15 @@ FIELDS: dict[str, Callable[[Json], Any]] = {
 }
 
 
-def embedded(results: dict[Path, Result]) -> Json:
-    """The legends of all files are merged."""
+def embedded(results: dict[Path, Result], sweeps: list[Json]) -> Json:
+    """The legends of all files are merged. sweeps: each with its files' numbers."""
+    sweep_of = {file: number for number, sweep in enumerate(sweeps) for file in sweep["files"]}
     return {
         "columns": ["file", *FIELDS],
         "points": [[file, *(read(point) for read in FIELDS.values())]
                    for file, result in enumerate(results.values()) for point in result.points],
-        "files": [{"name": path.name, "command": repeat_command(result)} for path, result in results.items()],
+        "files": [{"name": path.name, "command": repeat_command(result), "sweep": sweep_of[number]}
+                  for number, (path, result) in enumerate(results.items())],
         "labels": {name: result.label(name) for result in results.values()
                    for name in (*result.solvers, *(point["contestant"] for point in result.points))},
     }
@@ -122,14 +142,12 @@ def script_text(value: Any) -> str:
 
 # ---- the page ---------------------------------------------------------------------------------------------------------
 
-def page(results: dict[Path, Result], found: list[Json], claims: list[Json]) -> str:
+def page(results: dict[Path, Result], sweeps: list[Json], found: list[Json], claims: list[Json]) -> str:
     def file(name: str) -> str:
         return (PAGE / name).read_text(encoding="utf-8")
 
-    data = embedded(results)
-    with matplotlib.rc_context(RC):
-        pictures = "".join(picture(f"{path.stem}-{name}", draw) for path, result in results.items()
-                           for name, draw in all_figures(result, every=True).items())
+    data, names = embedded(results, sweeps), list(results)
+    drawn = pictures([(names[sweep["files"][0]].stem, Result(sweep["document"])) for sweep in sweeps])
     machines = [[path.name, *(str(result.context[key]) for key in ("date", "cpu_model", "num_cpus")),
                  build["git"][:12] + (" with changes" if build["dirty"] else ""), build["compiler"], build["flags"]]
                 for path, result in results.items() if (build := result.context["build"])]
@@ -137,7 +155,7 @@ def page(results: dict[Path, Result], found: list[Json], claims: list[Json]) -> 
     parts = [(name, title, body) for name, title, body in (
         ("findings", "Findings", findings(found)),
         ("points", "Who is fastest", file("table.html") if data["points"] else ""),
-        ("figures", "Figures", pictures),
+        ("figures", "Figures", drawn),
         ("claims", "The paper's claims", table(("Claim", "Says", "Verdict", "Measured", "Rule"), verdicts) if claims else ""),
         ("machine", "Machine and build", table(("File", "Date", "Processor", "Cores", "Commit", "Compiler", "Flags"), machines)),
     ) if body]
@@ -147,7 +165,7 @@ def page(results: dict[Path, Result], found: list[Json], claims: list[Json]) -> 
     return (
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n<title>Inextensible cloth: which solver, at which strain</title>\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; style-src 'unsafe-inline'; "
+        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src blob:; style-src 'unsafe-inline'; "
         "script-src 'unsafe-inline'\">\n"
         f'<style>\n{file("page.css")}</style>\n</head>\n<body>\n'
         "<header><h1>Which solver keeps cloth from stretching, how fast, how well</h1>\n"
@@ -163,7 +181,7 @@ def main() -> int:
     options = parser.parse_args()
     given = json.loads(options.report.read_text(encoding="utf-8"))
     results = {Path(entry["name"]): Result(entry["document"]) for entry in given["results"]}
-    text = page(results, given["findings"], given["claims"])
+    text = page(results, given["sweeps"], given["findings"], given["claims"])
     options.out.write_text(text, encoding="utf-8", errors="replace")
     print(options.out)
     return 0

@@ -170,15 +170,36 @@ struct Results : PageOptions {
   }
 };
 
-// Content of the report: every file with its analysis, the findings of all sweeps joined, and the
-// verdicts on the claims.
+// What a sweep is of, but for strain limits: scenes with their parameters.
+std::set<json> places_of(const json& document) {
+  std::set<json> places;
+  for (const json& point : document.value("points", json::array()))
+    places.insert({point.at("scene"), point.at("sweep"), point.at("scene_parameters")});
+  return places;
+}
+
+// Content of the report: every file; sweeps with their analysis, of which files that are of the same
+// scenes are pieces; the findings of all; and the verdicts on the claims.
 json report_json(const std::vector<NamedResult>& files) {
-  json results = json::array(), findings = results;
-  for (const auto& [name, document] : files)
-    results.push_back({{"name", name}, {"document", with_analysis(document)}});
-  if (const auto sweeps = documents_of(files, is_sweep); !sweeps.empty())
-    findings = analysis::findings_of(analysis::planes_of(joined(sweeps)));
+  json results = json::array(), sweeps = results, findings = results;
+  std::map<std::set<json>, std::vector<std::size_t>> pieces;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const auto& [name, document] = files[i];
+    results.push_back({{"name", name}, {"document", document}});
+    std::set<json> places = places_of(document);
+    if (places.empty()) places.insert(name);  // hard cases, known answers
+    pieces[places].push_back(i);
+  }
+  for (const auto& [places, numbers] : pieces) {
+    std::vector<json> documents;
+    documents.reserve(numbers.size());
+    for (const std::size_t i : numbers) documents.push_back(files[i].document);
+    sweeps.push_back({{"files", numbers}, {"document", with_analysis(joined(documents))}});
+  }
+  if (const auto all = documents_of(files, is_sweep); !all.empty())
+    findings = analysis::findings_of(analysis::planes_of(joined(all)));
   return {{"results", std::move(results)},
+          {"sweeps", std::move(sweeps)},
           {"findings", std::move(findings)},
           {"claims", judge_claims(documents_of(files, is_of_runs))}};
 }

@@ -63,7 +63,11 @@ function repeatButton(place, point) {
   return button;
 }
 
-// The picture shown is also the download: it need not be in the page twice.
-for (const link of document.querySelectorAll("a[data-of]")) {
-  link.href = document.getElementById(link.dataset.of).querySelector("img").src;
+// Pictures are packed by gzip. The picture shown is also the download.
+async function unpack(image) {
+  const packed = Uint8Array.from(atob(image.dataset.packed), (character) => character.charCodeAt(0));
+  const svg = await new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
+  image.src = URL.createObjectURL(new Blob([svg], {type: "image/svg+xml"}));
+  image.closest("figure").querySelector("a").href = image.src;
 }
+for (const image of document.querySelectorAll("img[data-packed]")) unpack(image);

@@ -7,13 +7,16 @@
   let limit = portion, key = "seconds", down = false, least = 1;
 
   // Best points of a sweep of one scene; its places are its limits or sizes.
-  const contests = new Map();
+  const contests = new Map(), sweeps = new Map();
   for (const point of points) {
     point.axis = point.sweep === "strain" ? percent(point.limit) : `${point.vertices} vertices`;
     if (point.sweep === "step" || !point.best || point.seconds === null) continue;
     const fixed = point.sweep === "strain" ? `${point.vertices} vertices` : percent(point.limit);
-    point.contest = `${words(point.scene)} over ${point.sweep}, ${fixed} (${data.files[point.file].name})`;
-    contests.set(point.contest, [...contests.get(point.contest) ?? [], point]);
+    const name = `${words(point.scene)} over ${point.sweep}, ${fixed}`, sweep = data.files[point.file].sweep;
+    // Sweeps of a scene with other parameters are contests of their own.
+    if (!sweeps.has(name)) sweeps.set(name, sweep);
+    const unique = sweeps.get(name) === sweep ? name : `${name} (${data.files[point.file].name})`;
+    contests.set(unique, [...contests.get(unique) ?? [], point]);
   }
   for (const name of contests.keys()) contest.append(element("option", {value: name}, name));
 
@@ -51,8 +54,10 @@
 
   function draw() {
     const wanted = filter.value.toLowerCase().split(/\s+/).filter(Boolean);
-    const kept = (contests.get(contest.value) ?? points).filter((point) => (!best.checked || point.best) && !hidden.has(point.solver) &&
-      (!place.value || point.axis === place.value) && wanted.every((word) => text.get(point).includes(word)));
+    const found = points.filter((point) => wanted.every((word) => text.get(point).includes(word)));
+    const here = new Set(contests.get(contest.value) ?? points);
+    const kept = found.filter((point) => here.has(point) && (!best.checked || point.best) && !hidden.has(point.solver) &&
+      (!place.value || point.axis === place.value));
     least = Math.min(...kept.map((point) => point.seconds ?? Infinity));
     const sign = down ? -1 : 1;
     kept.sort((a, b) => a[key] === b[key] ? 0 : a[key] === null ? 1 : b[key] === null ? -1 : sign * (a[key] < b[key] ? -1 : 1));
@@ -62,12 +67,15 @@
       return element("tr", {title: story(point)}, ...cells, element("td", {}, repeatButton(part("command"), point)));
     }));
     part("count").textContent = `${kept.length} of ${points.length} points`;
+    part("everywhere").hidden = kept.length > 0 || found.length === 0;
+    part("everywhere").textContent = `Show the ${found.length} outside of this choice`;
     part("more").hidden = kept.length <= limit;
   }
 
   contest.addEventListener("change", () => choose());
   for (const control of [place, best]) control.addEventListener("change", draw);
   filter.addEventListener("input", () => { limit = portion; draw(); });
+  part("everywhere").addEventListener("click", () => { contest.value = ""; best.checked = false; hidden.clear(); choose(""); });
   part("more").addEventListener("click", () => { limit += 5 * portion; draw(); });
   // Opens on the largest drape over strain at 1 %, or the first contest.
   const size = (name) => name.startsWith("drape over strain") ? contests.get(name)[0].vertices : 0;

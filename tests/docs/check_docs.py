@@ -12,7 +12,6 @@ and that line of that file must then contain the text. Generated blocks end with
 
     <!-- references -->                         the committed references
     <!-- bench list NAME -->                    what `bench list NAME` prints
-    <!-- folders of solvers -->                 which folders each folder of solvers/CMakeLists.txt uses
     <!-- gaps PATTERN TIME ... -->              the parts of the gaps of the committed references that match, at these times
     <!-- steps RESULT.json LIMIT STEP ...; ... -->    time and largest error of every contestant at these steps
     <!-- errors RESULT.json LIMIT CONTESTANT ... STEP ... -->   the largest error of these at each step
@@ -43,7 +42,7 @@ LINK = re.compile(r"\]\(([^)\s]+)\)")
 BACKTICKS = re.compile(r"`([^`\n]+)`")
 PATH = re.compile(r"\.?[\w-][\w./*-]*/[\w./*-]*")
 NAMED_DOCUMENT = re.compile(r"[\w/.-]*\w\.md\b")
-BLOCK = re.compile(r"<!-- (references|bench list|folders of|methods|orders|gaps|steps|errors|claims)([^>:]*?) -->\n\n?.*?<!-- end of list -->", re.DOTALL)
+BLOCK = re.compile(r"<!-- (references|bench list|methods|orders|gaps|steps|errors|claims)([^>:]*?) -->\n\n?.*?<!-- end of list -->", re.DOTALL)
 SURE = 3  # gaps of a reference
 SOURCES = ("solvers", "harness", "tests", "plots", "cmake", "configs")
 SOURCE_SUFFIXES = {".cpp", ".h", ".py", ".sh", ".cmake", ".txt", ".json"}
@@ -132,15 +131,6 @@ def table_of(name: str) -> str:
     quoted = "`bench {}`" if name == "verbs" else "`{}`"
     return markdown([name.removesuffix("s").replace("statuse", "status") if column == "name" else column for column in columns],
                     [[quoted.format(row[column]) if column == "name" else row[column].replace("|", "\\|") for column in columns] for row in rows])
-
-
-def folders_of(tree: str) -> str:
-    """Which folders each folder names in its CMakeLists.txt."""
-    text = read(ROOT / tree / "CMakeLists.txt")
-    uses = [(name, found[1].split() if (found := re.search(r"USES ([a-z ]+) ", rest)) else [])
-            for name, rest in re.findall(r"^add_folder\((\w+)([^)]*)\)", text, re.MULTILINE)]
-    uses += [(name, rest.split()) for name, rest in re.findall(rf"^folder_uses\(\w+ {tree}/(\w+)([^)]*)\)", text, re.MULTILINE)]
-    return markdown(["folder", "uses"], [[f"`{tree}/{name}`", ", ".join(used) or "-"] for name, used in uses])
 
 
 @functools.cache
@@ -234,7 +224,7 @@ def claims_of(words: str) -> str:
     return markdown(["", "claim", "verdict"], [[f"{name}, {where}", claim, verdict] for name, where, claim, verdict in said])
 
 
-BLOCKS = {"references": references, "claims": claims_of, "bench list": table_of, "folders of": folders_of, "methods": methods_of, "orders": orders_of, "gaps": gaps_of, "steps": steps_of, "errors": errors_of}
+BLOCKS = {"references": references, "claims": claims_of, "bench list": table_of, "methods": methods_of, "orders": orders_of, "gaps": gaps_of, "steps": steps_of, "errors": errors_of}
 
 
 def with_tables(text: str) -> str:
