@@ -52,14 +52,15 @@ def rank(place: Json) -> tuple[bool, int, int]:
 # ---- findings ---------------------------------------------------------------------------------------------------------
 
 def findings(found: list[Json]) -> str:
-    """The program's own. The answer that most readers come for, the largest drape over strain, is first and large."""
-    def items(texts: list[str]) -> str:
-        return "<ul>\n" + "".join(f"<li>{text}</li>\n" for text in texts) + "</ul>" if texts else ""
+    """The program's own. The answer that most readers come for is first and large; of each other one a line shows, which opens."""
+    def opened(text: str, first: str = "", *more: str) -> str:
+        items = "".join(f"<li>{sentence}</li>\n" for sentence in more)
+        return f"<details><summary>{text} {first}</summary>\n<ul>\n{items}</ul></details>\n" if more else f"<p>{text} {first}</p>\n"
 
     said = [[escape(text) for text in (f"{one['subject'].replace('_', ' ').capitalize()}, over {one['sweep']}:", *one["sentences"])]
             for one in sorted(found, key=rank)]
     answer = f'<p class="answer">{" ".join(said.pop(0))}</p>\n' if said and len(said[0]) > 1 else ""
-    return answer + items([text + items(sentences) for text, *sentences in said])
+    return answer + "".join(opened(*texts) for texts in said)
 
 
 # ---- figures ----------------------------------------------------------------------------------------------------------

@@ -87,7 +87,13 @@ struct Tune {
       if (!there)
         throw UsageError(
             name + " has no settings by today's rule yet: " + tune_command(on.scene, name, out));
-      const TunedEntry found = tune_solver(name, on, options, run, &*known);
+      // What is best elsewhere, and in other steppers, is tried first.
+      std::vector<Settings> others;
+      const auto method = [](const std::string& in) { return in.substr(0, in.find('@')); };
+      for (const TunedEntry& entry : entries)
+        if (entry.kind == known->kind && method(entry.solver) == method(name))
+          for (const TunedPlace& place : entry.places) others.push_back(place.settings);
+      const TunedEntry found = tune_solver(name, on, options, run, &*known, others);
       print(found);
       for (const TunedPlace& place : found.places) {
         std::erase_if(known->places, [&](const TunedPlace& p) {

@@ -61,7 +61,8 @@ struct Tuner {
   const TuneOptions& options;
   const Runner& run_one;
   const std::vector<TunedNumber>& numbers;
-  Values initial;  // where the search begins; it must improve on it
+  Values initial;              // where the search begins; it must improve on it
+  std::vector<Values> others;  // tried too
   Search search = {};
   std::optional<double> stiffness = {};   // to begin calibrations from
   Found leader = {};                      // so far; where the next search begins
@@ -77,7 +78,8 @@ struct Tuner {
     };
     std::vector<TunedNumber> from = numbers;
     for (std::size_t i = 0; i < from.size(); ++i) from[i].initial = initial[i];
-    const TuneOutcome outcome = tune_values(from, seconds, options.budget, guess);
+    if (!guess.empty()) others.insert(others.begin(), guess);
+    const TuneOutcome outcome = tune_values(from, seconds, options.budget, others);
     const auto was = measured.find(initial), is = measured.find(outcome.values);
     if (was == measured.end() || is == measured.end()) return {};
     guess = outcome.values;
@@ -141,14 +143,17 @@ struct Tuner {
     }
   }
 
-  // Where no step counts initially: begins with `guess`, or the first drawn set for which one does.
+  // Where no step counts initially: begins with the first set for which one does, of `guess`, the
+  // others and drawn ones.
   void draw_start(const Values& guess) {
     std::mt19937_64 random{1};
     std::uniform_real_distribution<double> position(0, 1);
-    for (int trial = 0; trial < options.budget && leader.seconds >= 1e300; ++trial) {
+    std::vector<Values> starts = others;
+    if (!guess.empty()) starts.insert(starts.begin(), guess);
+    for (std::size_t t = 0; t < starts.size() + options.budget && leader.seconds >= 1e300; ++t) {
       for (std::size_t i = 0; i < initial.size(); ++i)
         initial[i] = value_at(numbers[i], position(random));
-      if (trial == 0 && !guess.empty()) initial = guess;
+      if (t < starts.size()) initial = starts[t];
       find_best(1e300);
     }
   }
@@ -231,7 +236,7 @@ Values values_of(const Settings& settings, const std::vector<TunedNumber>& numbe
 }  // namespace
 
 TuneOutcome tune_values(const std::vector<TunedNumber>& numbers, const TuneObjective& seconds,
-                        int budget, const Values& guess) {
+                        int budget, const std::vector<Values>& guesses) {
   TuneOutcome outcome;
   for (const TunedNumber& n : numbers) outcome.values.push_back(n.initial);
   const Values initial = outcome.values;
@@ -254,7 +259,8 @@ TuneOutcome tune_values(const std::vector<TunedNumber>& numbers, const TuneObjec
     best = found;
     outcome.values = values;
   };
-  if (!guess.empty() && left() > 0) try_out(guess);
+  for (const Values& guess : guesses)
+    if (left() > 0) try_out(guess);
   Random random{seed};
   const int steps = left();
   for (int step = 1; step <= steps; ++step) {
@@ -304,7 +310,8 @@ double value_at(const TunedNumber& number, double position) {
 }
 
 TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene, TuneOptions options,
-                       const Runner& run, const TunedEntry* known) {
+                       const Runner& run, const TunedEntry* known,
+                       const std::vector<Settings>& others) {
   const Backend& backend = *find_backend(solver);
   const std::vector<TunedNumber> numbers = tunable_numbers(backend);
   options.budget = std::min(options.budget, options.trials_each * static_cast<int>(numbers.size()));
@@ -317,6 +324,9 @@ TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene, TuneOp
   if (numbers.empty()) return entry;
   Contestant there{.name = solver, .solver = solver};
   if (known) there.settings_at = known->settings_at();
+  std::vector<Values> tried;
+  if (known) tried.push_back(values_of({}, numbers));
+  for (const Settings& other : others) tried.push_back(values_of(other, numbers));
   Values guess;
   for (const int size : scene.resolutions)
     for (const double limit : scene.limits) {
@@ -326,7 +336,7 @@ TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene, TuneOp
       here.resolutions = {size};
       here.limits = {limit};
       if (auto place = Tuner{here, options, run, numbers,
-                             values_of(there.settings_for(size, limit), numbers)}
+                             values_of(there.settings_for(size, limit), numbers), tried}
                            .run(guess))
         entry.places.push_back(std::move(*place));
     }

@@ -28,9 +28,9 @@ struct TuneOutcome {
   int evaluations = 0;  // the first one included; at most the budget
 };
 
-// `guess`, if any, is tried right after the initial values. Throws what `seconds` throws.
+// Guesses are tried right after the initial values. Throws what `seconds` throws.
 TuneOutcome tune_values(const std::vector<TunedNumber>& numbers, const TuneObjective& seconds,
-                        int budget, const Values& guess = {});
+                        int budget, const std::vector<Values>& guesses = {});
 
 // A value's position in its range, from 0 to 1, and back: by the logarithm of the distance to its
 // bound if it has one; else logarithmic if the range (of counts: 1 + count) spans a factor of ten.
@@ -50,8 +50,10 @@ struct TuneOptions {
 
 // Without `context`. A place where nothing is gained has no settings; one where no settings work is
 // left out. known: settings of other places; each search begins with those of the nearest one and
-// must improve on them. Throws Interrupted.
+// must improve on them. others: settings that are tried next, after the defaults; what the solver
+// lacks of them does not count. Throws Interrupted.
 TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene, TuneOptions options,
-                       const Runner& run, const TunedEntry* known = nullptr);
+                       const Runner& run, const TunedEntry* known = nullptr,
+                       const std::vector<Settings>& others = {});
 
 }  // namespace harness

@@ -156,6 +156,30 @@ TEST(Tune, EachPlaceIsTunedForItself) {
   }
 }
 
+// A place of one's own begins with the nearest place's settings. What is best elsewhere is tried
+// next, and begins the search if no step counts with the nearest ones.
+TEST(Tune, WhatIsBestElsewhereIsTriedBeforeAnythingIsDrawn) {
+  SweepSpec chain = tuning_scenes().front();
+  chain.resolutions = {80};
+  chain.limits = {0.01};
+  const Settings nearest{{"relaxation", 1.9}}, elsewhere{{"relaxation", 1.7}};
+  const TunedEntry known{
+      .kind = "chain", .solver = "gauss_seidel_colored", .places = {{{50, 0.02, nearest}}}};
+  for (const bool nearest_fails : {false, true}) {
+    FakeMachine machine{
+        [&](const PointSpec& spec) { return spec.settings == elsewhere ? 0.1 : 1.0; },
+        [&](const PointSpec& spec) {
+          return nearest_fails && spec.settings != elsewhere ? PointStatus::diverged
+                                                             : PointStatus::ok;
+        }};
+    const TunedEntry entry = tune_solver("gauss_seidel_colored", chain, {.budget = 5},
+                                         machine.runner(), &known, {elsewhere});
+    ASSERT_EQ(entry.places.size(), 1u);
+    EXPECT_EQ(entry.places.front().settings, elsewhere) << nearest_fails;
+    EXPECT_EQ(machine.specs.front().settings, nearest);
+  }
+}
+
 // A fast run whose motion is wrong by 5 % of the scene's size counts only if its error is unknown.
 TEST(Tune, OnlyMotionThatIsRightCounts) {
   const auto wrong = [](const Settings& given) { return relaxation_of(given) > 1.9; };
