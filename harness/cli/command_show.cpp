@@ -178,8 +178,8 @@ std::set<json> places_of(const json& document) {
   return places;
 }
 
-// Content of the report: every file; sweeps with their analysis, of which files that are of the same
-// scenes are pieces; the findings of all; and the verdicts on the claims.
+// Content of the report: every file; sweeps with their analysis, of which files that are of the
+// same scenes are pieces; the findings of all; and the verdicts on the claims.
 json report_json(const std::vector<NamedResult>& files) {
   json results = json::array(), sweeps = results, findings = results;
   std::map<std::set<json>, std::vector<std::size_t>> pieces;
