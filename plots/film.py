@@ -40,8 +40,6 @@ class Film:
         self.line = round(1.35 * size)
 
 
-# ---- Words ------------------------------------------------------------------------------------------------------------
-
 def percent(strain: float) -> str:
     return f"{100 * strain:.3g} %" if strain >= 1e-5 else "below 0.001 %"
 
@@ -60,8 +58,6 @@ def caption(film: Film, take: int, frame: int) -> list[str]:
         lines.append("sag: " + ", ".join(f"{name} {1000 * sag:.1f} mm" if abs(sag) < 1 else f"{name} {sag:.2f} m" for name, sag in sags.items()))
     return lines
 
-
-# ---- Sheets -----------------------------------------------------------------------------------------------------------
 
 def write(picture: Image.Image, film: Film, lines: list[str], top: float, left: float | None = MARGIN, fill: Any = INK) -> None:
     """Line by line; left None: centred."""
@@ -134,8 +130,6 @@ def stills(film: Film) -> Image.Image:
     cells = [[(take, frame) for frame in film.frames] for take in takes]
     return sheet(film, cells if len(film.frames) > 1 else [[cell for row in cells for cell in row]])
 
-
-# ---- Files ------------------------------------------------------------------------------------------------------------
 
 def save(film: Film, out: Path) -> None:
     if out.suffix == ".png":

@@ -49,8 +49,6 @@ def rank(place: Json) -> tuple[bool, int, int]:
     return (place["scene"], place["sweep"]) != FIRST, KINDS.index(place["sweep"]), -place["vertices"]
 
 
-# ---- findings ---------------------------------------------------------------------------------------------------------
-
 def findings(found: list[Json]) -> str:
     """The program's own. The answer that most readers come for is first and large; of each other one a line shows, which opens."""
     def opened(text: str, first: str = "", *more: str) -> str:
@@ -62,8 +60,6 @@ def findings(found: list[Json]) -> str:
     answer = f'<p class="answer">{" ".join(said.pop(0))}</p>\n' if said and len(said[0]) > 1 else ""
     return answer + "".join(opened(*texts) for texts in said)
 
-
-# ---- figures ----------------------------------------------------------------------------------------------------------
 
 def picture(name: str, draw: Callable[[], Figure]) -> str:
     """A figure as an SVG that cannot run scripts. It is packed, and a script unpacks it."""
@@ -89,8 +85,6 @@ def pictures(sweeps: list[tuple[str, Result]]) -> str:
             complete += "".join(picture(f"{stem}-{name}", draw) for name, draw in every.items() if name not in few)
     return shown + (f"<details><summary>Figures of all solvers, with their steps and failures</summary>\n{complete}</details>" if complete else "")
 
-
-# ---- the scripts' data, one JSON document: labels of solvers, and a row a point ------------------------------------------
 
 def _samples(point: Json) -> list[float]:
     return (point["seconds_per_simulated_second"] or {"samples": []})["samples"]
@@ -140,8 +134,6 @@ def script_text(value: Any) -> str:
     text = json.dumps(value, separators=(",", ":"), allow_nan=False)
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 
-
-# ---- the page ---------------------------------------------------------------------------------------------------------
 
 def page(results: dict[Path, Result], sweeps: list[Json], found: list[Json], claims: list[Json]) -> str:
     def file(name: str) -> str:

@@ -71,14 +71,14 @@ struct Tuner {
   // Nothing if no step counts with any settings. `guess` is tried first, and gets the values found.
   std::optional<TunedPlace> run(Values& guess) {
     begin(guess);
-    if (leader.seconds >= 1e300) draw_start(guess);
+    if (!guess.empty()) others.insert(others.begin(), guess);
+    if (leader.seconds >= 1e300) draw_start();
     if (leader.seconds >= 1e300) return {};
     const auto seconds = [this](const Values& values, double hopeless) {
       return evaluate(values, hopeless);
     };
     std::vector<TunedNumber> from = numbers;
     for (std::size_t i = 0; i < from.size(); ++i) from[i].initial = initial[i];
-    if (!guess.empty()) others.insert(others.begin(), guess);
     const TuneOutcome outcome = tune_values(from, seconds, options.budget, others);
     const auto was = measured.find(initial), is = measured.find(outcome.values);
     if (was == measured.end() || is == measured.end()) return {};
@@ -143,17 +143,14 @@ struct Tuner {
     }
   }
 
-  // Where no step counts initially: begins with the first set for which one does, of `guess`, the
-  // others and drawn ones.
-  void draw_start(const Values& guess) {
+  // Where no step counts initially: begins with the first other or drawn set for which one does.
+  void draw_start() {
     std::mt19937_64 random{1};
     std::uniform_real_distribution<double> position(0, 1);
-    std::vector<Values> starts = others;
-    if (!guess.empty()) starts.insert(starts.begin(), guess);
-    for (std::size_t t = 0; t < starts.size() + options.budget && leader.seconds >= 1e300; ++t) {
+    const std::size_t tries = others.size() + static_cast<std::size_t>(options.budget);
+    for (std::size_t t = 0; t < tries && leader.seconds >= 1e300; ++t) {
       for (std::size_t i = 0; i < initial.size(); ++i)
-        initial[i] = value_at(numbers[i], position(random));
-      if (t < starts.size()) initial = starts[t];
+        initial[i] = t < others.size() ? others[t][i] : value_at(numbers[i], position(random));
       find_best(1e300);
     }
   }

@@ -92,8 +92,6 @@ def label_ends(axes: Axes, curves: Curves, styles: Styles) -> None:
                       arrowprops={"arrowstyle": "-", "color": "#AAAAAA", "linewidth": 0.6, "shrinkA": 0, "shrinkB": 3})
 
 
-# ---- the steps that the fastest runs took -----------------------------------------------------------------------------
-
 def draw_steps(axes: Axes, curves: Curves, styles: Styles) -> None:
     """Solvers often share a step, so each is moved sideways a little; an arrow marks the coarsest or finest step tried."""
     shown = [(style, curves[solver].best) for solver, style in styles.items() if style.leads and solver in curves]
@@ -109,8 +107,6 @@ def draw_steps(axes: Axes, curves: Curves, styles: Styles) -> None:
                 axes.add_artist(Annotation(sign, (b.x, b.step), (0, up), xycoords=moved, textcoords="offset points", fontsize=8,
                                            color=style.color, ha="center", va=beside, zorder=12, annotation_clip=False, clip_on=False))
 
-
-# ---- failures ---------------------------------------------------------------------------------------------------------
 
 def failed_rows(curves: Curves, styles: Styles) -> Rows:
     return {solver: curves[solver].failures for solver, style in styles.items() if style.leads and solver in curves and curves[solver].failures}

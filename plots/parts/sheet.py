@@ -77,8 +77,6 @@ def legend_height(styles: Styles) -> float:
     return 0.2 * sum(style.leads for style in styles.values())
 
 
-# ---- Words around a figure ---------------------------------------------------------------------------------------------
-
 def warnings_of(result: Result) -> list[str]:
     """What a reader must not overlook; drawn in bold above the axes."""
     quick = result.suite.get("profile") == "quick"

@@ -67,8 +67,6 @@ def files_of_tree() -> list[Path]:
             if path.is_file() and path.suffix in SOURCE_SUFFIXES]
 
 
-# ---- quoted lines -----------------------------------------------------------------------------------------------------
-
 def lines_with(path: Path, text: str) -> list[int]:
     return [number for number, line in enumerate(read(path).splitlines(), 1) if text in line] if path.is_file() else []
 
@@ -77,8 +75,6 @@ def quotes(document: Path) -> list[str]:
     return [f"{path}: '{text}' is not in line {line} (run tests/docs/check_docs.py --fix)"
             for path, line, text in QUOTE.findall(read(document)) if int(line) not in lines_with(ROOT / path, text)]
 
-
-# ---- generated blocks -------------------------------------------------------------------------------------------------
 
 def markdown(head: list[str], rows: list[list[str]]) -> str:
     return "".join(f"| {' | '.join(row)} |\n" for row in (head, *rows)).replace("\n", f"\n{'|---' * len(head)}|\n", 1) + "\n"
@@ -249,8 +245,6 @@ def fix() -> None:
             document.write_text(new, encoding="utf-8")
             print(f"{document.relative_to(ROOT)}: brought up to date")
 
-
-# ---- names of files and numbers ---------------------------------------------------------------------------------------
 
 def heading_anchors(document: Path) -> set[str]:
     headings = re.findall(r"^#+ (.*)$", read(document), re.MULTILINE)

@@ -130,8 +130,6 @@ def known_answers() -> Json:
     return {**given, "legend": committed("figure1.json")["legend"], "answers": answers, "rows": rows}
 
 
-# ---- drawn figures ------------------------------------------------------------------------------------------------
-
 def analysed(result: Json) -> Result:
     """As bench gives it to its scripts: checked, with the analysis of a sweep."""
     if "points" not in result:

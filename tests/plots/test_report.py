@@ -39,8 +39,6 @@ def test_data_end_no_script() -> None:
     assert json.loads(text)["name"].startswith("</script>")
 
 
-# ---- in a browser ----
-
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
     webdriver = pytest.importorskip("selenium.webdriver")
