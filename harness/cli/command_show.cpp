@@ -171,10 +171,10 @@ struct Results : PageOptions {
 };
 
 // What a sweep is of, but for strain limits: scenes with their parameters.
-std::set<json> places_of(const json& document) {
-  std::set<json> places;
+json places_of(const json& document) {
+  json places = json::object();
   for (const json& point : document.value("points", json::array()))
-    places.insert({point.at("scene"), point.at("sweep"), point.at("scene_parameters")});
+    places[json{point.at("scene"), point.at("sweep"), point.at("scene_parameters")}.dump()] = true;
   return places;
 }
 
@@ -182,12 +182,12 @@ std::set<json> places_of(const json& document) {
 // same scenes are pieces; the findings of all; and the verdicts on the claims.
 json report_json(const std::vector<NamedResult>& files) {
   json results = json::array(), sweeps = results, findings = results;
-  std::map<std::set<json>, std::vector<std::size_t>> pieces;
+  std::map<json, std::vector<std::size_t>> pieces;
   for (std::size_t i = 0; i < files.size(); ++i) {
     const auto& [name, document] = files[i];
     results.push_back({{"name", name}, {"document", document}});
-    std::set<json> places = places_of(document);
-    if (places.empty()) places.insert(name);  // hard cases, known answers
+    json places = places_of(document);
+    if (places.empty()) places[name] = true;  // hard cases, known answers
     pieces[places].push_back(i);
   }
   for (const auto& [places, numbers] : pieces) {
