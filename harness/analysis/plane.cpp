@@ -9,8 +9,6 @@ bool may_answer(const Point& p) {
   return p.ok() && p.timed() && p.spec().step <= longest_step * (1 + 1e-9);
 }
 
-// "gauss_seidel@bdf2" is the method gauss_seidel in the stepper bdf2; "" is the published one.
-std::string method_of(const std::string& row) { return row.substr(0, row.find('@')); }
 std::string stepper_of(const std::string& row) { return row.substr(method_of(row).size()); }
 
 bool is_of_paper(const std::string& method) {

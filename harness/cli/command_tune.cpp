@@ -89,9 +89,8 @@ struct Tune {
             name + " has no settings by today's rule yet: " + tune_command(on.scene, name, out));
       // What is best elsewhere, and in other steppers, is tried first.
       std::vector<Settings> others;
-      const auto method = [](const std::string& in) { return in.substr(0, in.find('@')); };
       for (const TunedEntry& entry : entries)
-        if (entry.kind == known->kind && method(entry.solver) == method(name))
+        if (entry.kind == known->kind && method_of(entry.solver) == method_of(name))
           for (const TunedPlace& place : entry.places) others.push_back(place.settings);
       const TunedEntry found = tune_solver(name, on, options, run, &*known, others);
       print(found);

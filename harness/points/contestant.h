@@ -31,6 +31,9 @@ struct Contestant {
 };
 using Contestants = std::vector<Contestant>;
 
+// gauss_seidel of "gauss_seidel@bdf2": a method in a stepper; without @ in its published one.
+inline std::string method_of(const std::string& name) { return name.substr(0, name.find('@')); }
+
 // The contestant of this name, or the end.
 Contestants::iterator find_contestant(Contestants& all, const std::string& name);
 std::string label_of(const Contestant& contestant);

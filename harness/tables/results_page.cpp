@@ -1,6 +1,7 @@
 #include <iterator>
 
 #include "harness/claims/claims.h"
+#include "harness/points/contestant.h"
 #include "harness/tables/tables.h"
 
 namespace harness {
@@ -245,9 +246,8 @@ Table outcomes_in(const json& document) {
   // A row for each method, with the counts of its steppers.
   std::string method;
   for (const std::string& solver : in_order(matrix, solver_of)) {
-    const std::size_t at = solver.find('@');
-    const bool next = solver.substr(0, at) != method;
-    method = solver.substr(0, at);
+    const bool next = method_of(solver) != method;
+    method = method_of(solver);
     if (next) table.rows.emplace_back(table.head.size());
     std::size_t column = 0;
     const auto add = [&](const std::string& text) {
@@ -255,7 +255,7 @@ Table outcomes_in(const json& document) {
       if (!next) cell += ", ";
       cell += text;
     };
-    add(next ? solver : solver.substr(at));
+    add(next ? solver : solver.substr(method.size()));
     for (const char* outcome : outcomes) add(std::to_string(count[solver][outcome]));
   }
   return table;
