@@ -216,7 +216,7 @@ RunEvents journaled_events(Journal& journal, Progress& progress);
 
 struct OutputOptions {
   std::string out;
-  bool resume = false, rerun_failed = false, force = false, no_plots = false;
+  bool resume = false, force = false, no_plots = false;
 
   void declare(const Command& to, const std::string& standard);
 };
@@ -246,9 +246,9 @@ struct Undertaking {
 };
 
 // Writes to --out or results/local/<stem>.json and draws the figures; returns an ExitCode. --resume
-// and --rerun-failed continue from an earlier run's journal or else its result. Throws UsageError,
-// naming the options that help, for files that must not be replaced without them. An interrupted
-// run writes a partial result, but never over a complete one.
+// continues from an earlier run's journal or else its result. Throws UsageError, naming the options
+// that help, for files that must not be replaced without them. An interrupted run writes a partial
+// result, but never over a complete one.
 int carry_out(const OutputOptions& options, const Undertaking& undertaking);
 
 // ---- Figures, films and reports, drawn by the scripts of plots/ ----

@@ -69,8 +69,6 @@ struct SweepCommand : SweepOptions, OutputOptions {
     command.flag("--dry-run", dry_run, "print what would run and how long, and stop");
     add_no_wait(command, no_wait);
     of_suites.byte_count("--memory", memory, "address space a point may have, e.g. 4G");
-    of_suites.flag("--rerun-failed", rerun_failed,
-                   "as --resume, also after a finished run, and run again what failed");
     of_cases.option("--case", hard_case, "only cases whose name contains a match, e.g. 'Q[12]'",
                     "REGEX");
   }
@@ -140,7 +138,6 @@ struct SweepCommand : SweepOptions, OutputOptions {
     if (dry_run) return print_plan(suite, searches);
     json context = context_of_suite();
     const auto run = [&](Journal& journal, const json& before) -> Finished {
-      if (rerun_failed) forget_failures(journal);
       const auto references = ReferenceFolder::usual();
       for (const SweepSpec& spec : suite.sweeps) std::cerr << find_scene(spec.scene)->remarks;
       report_missing_references(searches, *references);
@@ -261,25 +258,39 @@ struct RepeatCommand {
   static void add(json& document, const json& context, const std::optional<PairNoise>& noise,
                   const Best& timed) {
     json& occasions = document["context"]["occasions"];
-    if (occasions.is_null()) occasions = json::array();
     occasions.push_back({{"date", context.at("date")},
                          {"cpu_model", context.at("cpu_model")},
                          {"commit", context.at("build").at("git")},
                          {"load_avg", context.at("load_avg")},
                          {"noise", noise ? json(noise->q95) : json()}});
-    const auto occasion = static_cast<double>(occasions.size());
     std::vector<std::vector<double>> all;
     for (std::size_t i = 0; i < timed.rows.size(); ++i) {
       json& row = document["points"][timed.rows[i]];
       PointResult point = point_of(row);
       const PointResult& more = timed.points[i];
       if (!more.samples.empty())
-        point.occasions.push_back({occasion, more.seconds(), quantile(more.samples, 0.5)});
+        point.occasions.push_back(
+            {static_cast<double>(occasions.size()), more.seconds(), quantile(more.samples, 0.5)});
       row = row_of(point);
       auto& times = all.emplace_back();
       for (const auto& [unused, seconds] : point.times()) times.push_back(seconds);
     }
     document["context"]["scatter"] = number(scatter_of(all));
+  }
+
+  // The document with these times in place of its own, which are not to be quoted.
+  static json instead(const json& document, const json& context, const Suite& suite,
+                      const Best& timed) {
+    std::vector<PointResult> points;
+    for (const json& row : document.at("points")) points.push_back(point_of(row));
+    for (std::size_t i = 0; i < timed.rows.size(); ++i)
+      if (!timed.points[i].samples.empty()) points[timed.rows[i]] = timed.points[i];
+    const json& was = document.at("context");
+    json now = result_document(was, suite, {}, true, points, document.at("references"));
+    now["legend"] = document.at("legend");
+    for (const char* key : {"command", "suite", "seed"}) now["context"][key] = was.at(key);
+    for (const char* key : {"date", "cpu_model", "load_avg"}) now["context"][key] = context.at(key);
+    return now;
   }
 
   int run() const {
@@ -288,7 +299,8 @@ struct RepeatCommand {
       throw UsageError("'" + file + "' is not a complete, timed result of a sweep over strain, " +
                        "resolution or step");
     Best best = best_of(document, file);
-    const Suite suite = document.at("context").at("suite");
+    Suite suite = document.at("context").at("suite");
+    suite.same = document.at("context").at("suite").value("same", "");
     const TimingLock lock(!no_wait);
     const json context = machine_context();
     warn_if_busy(context);
@@ -310,20 +322,22 @@ struct RepeatCommand {
       static_cast<Samples&>(best.points[i]) = samples[i];
       lost += samples[i].samples.empty();
     }
-    const std::string same = document.at("context").at("suite").value("same", "");
-    const auto noise = pair_noise(best.points, same);
+    const auto noise = pair_noise(best.points, suite.same);
     if (const std::string why = noise ? why_not_quotable(*noise) : ""; !why.empty()) {
       journal.remove();
       std::cerr << "bench: not added, '" << file << "' stays as it was: " << why << '\n';
       return cannot_decide;
     }
-    add(document, context, noise, best);
+    if (document.contains("warning"))
+      document = instead(document, context, suite, best);
+    else
+      add(document, context, noise, best);
     write_atomically(file, result_text(document));
     journal.remove();
-    std::cout << file << ": occasion " << document["context"]["occasions"].size() + 1
+    std::cout << file << ": occasion " << document["context"].value("occasions", json()).size() + 1
               << "; best points timed: " << best.rows.size() - lost;
     if (lost > 0) std::cout << "; runs that did not end well this time: " << lost;
-    const json scatter = document["context"]["scatter"];
+    const json scatter = document["context"].value("scatter", json());
     if (scatter.is_number())
       std::cout << "; a ratio of two times varies by "
                 << number_text(100 * scatter.get<double>(), 2)

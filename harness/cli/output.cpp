@@ -43,7 +43,6 @@ void check_same(const OutputOptions& options, const std::string& path, const jso
 std::optional<json> begin_journal(const OutputOptions& options, const std::string& out,
                                   Journal& journal, const Undertaking& run) {
   const json mine = identity(run.context, run.suite);
-  const bool again = options.resume || options.rerun_failed;
   const json header = {
       {"schema", "inextensible-journal/2"}, {"identity", mine}, {"context", run.context}};
   const std::size_t count = run.count(journal);
@@ -52,22 +51,22 @@ std::optional<json> begin_journal(const OutputOptions& options, const std::strin
     throw UsageError("'" + journal.path() + "' is damaged, " + journal.damage() +
                      "; --resume --force continues with the " + entries +
                      " that can be read, --force starts again");
-  if (!options.force && count > 0 && !again)
+  if (!options.force && count > 0 && !options.resume)
     throw UsageError("'" + journal.path() + "' has " + entries +
                      " of a run that did not finish: --resume continues it, --force starts again");
-  if (again && count > 0) {
+  if (options.resume && count > 0) {
     const json was = journal.header().is_object() ? journal.header() : json::object();
     check_same(options, journal.path(), was.value("identity", json()), mine);
     journal.go_on(header);
     return was.value("context", json());
   }
-  if (again && exists(out)) {
+  if (options.resume && exists(out)) {
     const json result = read_result(out, ResultKinds::all);
     if (!result.contains(run.rows))
       throw UsageError("'" + out + "' is the result of another kind of sweep: nothing to resume");
     const json& context = result.at("context");
     check_same(options, out, identity(context, context.value("suite", json())), mine);
-    if (result.at("complete").get<bool>() && !options.rerun_failed) return std::nullopt;
+    if (result.at("complete").get<bool>()) return std::nullopt;
     journal.start(header);
     run.add(result, journal);
     return context;
@@ -158,8 +157,8 @@ std::string default_output(const std::string& stem, const std::string& ending, b
 }
 
 int carry_out(const OutputOptions& options, const Undertaking& undertaking) {
-  const bool last = options.resume || options.rerun_failed || options.force;
-  const std::string out = options.out.empty() ? default_output(undertaking.stem, ".json", last)
+  const std::string out = options.out.empty() ? default_output(undertaking.stem, ".json",
+                                                               options.resume || options.force)
                                               : regular_output_path(options.out);
   check_writable(out);
   Journal journal(out);

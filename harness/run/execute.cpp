@@ -33,14 +33,6 @@ std::string key_of_repetition(const std::string& key, int i) {
   return key + repetition_mark + std::to_string(i);
 }
 
-bool is_point(const std::string& key) { return key.find(repetition_mark) == std::string::npos; }
-
-void forget_point(const std::string& key, Journal& journal) {
-  for (int i = 1; journal.find(key_of_repetition(key, i)); ++i)
-    journal.forget(key_of_repetition(key, i));
-  journal.forget(key);
-}
-
 // Leaves a point of a result file its first sample; lists without an entry for each sample stay.
 std::vector<Samples> cut_off_repetitions(PointResult& point) {
   const std::size_t samples = point.samples.size();
@@ -145,7 +137,9 @@ Runner journaled(const Runner& inner, Journal& journal) {
         find_reference(limits, spec);
         return point;
       }
-      forget_point(key, journal);
+      for (int i = 1; journal.find(key_of_repetition(key, i)); ++i)
+        journal.forget(key_of_repetition(key, i));
+      journal.forget(key);
     }
     PointResult point = inner(spec, limits);
     journal.add(key, to_json(point));
@@ -168,16 +162,10 @@ void add_runs_of(const json& result, Journal& journal) {
   }
 }
 
-void forget_failures(Journal& journal) {
-  std::vector<std::string> failed;
-  for (const auto& [key, value] : journal.known())
-    if (is_point(key) && value.at("status") != "ok") failed.push_back(key);
-  for (const std::string& key : failed) forget_point(key, journal);
-}
-
 std::size_t points_in(const Journal& journal) {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      journal.known(), [](const auto& entry) { return is_point(entry.first); }));
+  return static_cast<std::size_t>(std::ranges::count_if(journal.known(), [](const auto& entry) {
+    return entry.first.find(repetition_mark) == std::string::npos;
+  }));
 }
 
 }  // namespace harness

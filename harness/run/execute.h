@@ -26,7 +26,6 @@ Runner isolated(const Runner& inner, double memory);
 Runner journaled(const Runner& inner, Journal& journal);
 
 void add_runs_of(const json& result, Journal& journal);
-void forget_failures(Journal& journal);
 std::size_t points_in(const Journal& journal);  // without repetitions
 
 }  // namespace harness

@@ -15,6 +15,8 @@ constexpr double hopeless_factor = 3, patient_factor = 30;
 // Cloth may settle into the same wrong folds at several coarse steps before a finer one is right.
 constexpr double stays = 0.85;
 constexpr int longest_stay = 5;
+// Timeouts that end a walk; more before a run was ok, as some iterate longest at coarse steps.
+constexpr int most_timeouts = 2, most_first_timeouts = 4;
 constexpr double never = std::numeric_limits<double>::infinity();
 
 // A point whose calibration timed out is skipped.
@@ -54,7 +56,7 @@ class StepSearch {
 
   void try_all() {
     int timeouts = 0;
-    for (std::size_t rung = 0; rung < ladder_.rungs && timeouts < 2; ++rung) {
+    for (std::size_t rung = 0; rung < ladder_.rungs && timeouts < most_timeouts; ++rung) {
       const PointResult& point = visit(rung);
       if (unsupported_) break;
       timeouts = gave_up(point) ? timeouts + 1 : 0;
@@ -99,7 +101,8 @@ class StepSearch {
         error_stays_ = error > stays * last_error && error > *goal_ ? error_stays_ + 1 : 0;
         last_error = error;
       }
-      if (timeouts == 2 || (rises >= 2 && (direction < 0 || done(rung, point)))) return;
+      const int most = best_rung(any_motion) ? most_timeouts : most_first_timeouts;
+      if (timeouts >= most || (rises >= 2 && (direction < 0 || done(rung, point)))) return;
     }
   }
 

@@ -77,9 +77,6 @@ same whole.json killed.json || fail "killed and resumed is not undisturbed"
 cp killed.json copy.json
 bench "${sweep[@]}" --resume --out killed.json >stdout.txt 2>&1 || fail "--resume of a finished run: exit $?"
 grep -q "complete already" stdout.txt && cmp -s killed.json copy.json || fail "--resume touched a finished run"
-bench "${sweep[@]}" --rerun-failed --out killed.json >/dev/null 2>&1 || fail "--rerun-failed: exit $?"
-holds 'assert "resumed" in read("killed.json")["context"]'
-same whole.json killed.json || fail "what failed does not fail again"
 
 # ---- Two runs on one output ----
 hold both.json 3
@@ -98,7 +95,14 @@ cmp -s other.json.journal kept || fail "a refused journal was touched"
 ./other_bench "${sweep[@]}" --resume --force --out other.json >/dev/null 2>&1 || fail "--resume --force: exit $?"
 same whole.json other.json || fail "resumed by another build"
 
-# ---- Another occasion: best points alone, added to the file, or nothing ----
+# ---- Another occasion: best points alone, added to the file, in place of noisy ones, or nothing ----
+python3 -c 'import json; d = json.load(open("whole.json")); d["warning"] = "noisy"; json.dump(d, open("again.json", "w"))'
+bench repeat again.json --no-wait >/dev/null 2>&1 || fail "repeat of a noisy file: exit $?"
+holds '
+was, now = read("whole.json"), read("again.json")
+assert was["context"]["suite"] == now["context"]["suite"] and "warning" not in now and "occasions" not in now["context"]
+for p, q in zip(was["points"], now["points"]):
+    assert (p == q) != (p["best"] or bool(p["best_at_errors"])) and p["error"] == q["error"] and p["work"] == q["work"], p["id"]'
 cp whole.json again.json
 bench repeat again.json --no-wait >/dev/null 2>&1 || fail "repeat: exit $?"
 holds '
