@@ -136,7 +136,7 @@ def _failures(columns: list[Column], styles: Styles, sweep: str) -> str:
     if not failed + wrong:
         return f"Each of these methods has a run that counts at every {'limit' if sweep == 'strain' else 'size'}."
     return "Missing " + "; ".join(f"{why}: {'; '.join(of)}" for why, of in (
-        ("because every step tried failed", failed), ("on the right for too large an error", wrong)) if of) + "."
+        ("because every step tried failed or was stopped as far too slow", failed), ("on the right for too large an error", wrong)) if of) + "."
 
 
 def _caption(figure: Json, points: list[Json], result: Result) -> str:
