@@ -119,7 +119,7 @@ sed 's/fast_projection/misfit/g' point.txt >thrown.txt
 sound() { printf '%s' "$kinds/libplugin_$1.so"; }
 "$bench" --plugin "$(sound bare)" --sweep strain --profile pairs --reps 1 --filter 'strain:0.0*1/' --solver sound \
   --no-plots --out bare.json >sweep.txt 2>&1 || fail "a solver without collider: $(cat sweep.txt)"
-grep -q 'left out.*drape by sound (' sweep.txt || fail "a scene left out in silence: $(cat sweep.txt)"
+grep -q 'left out, because .*drape by sound (collider)' sweep.txt || fail "a scene left out in silence: $(cat sweep.txt)"
 holds '
 points = [p for p in read("bare.json")["points"] if p["solver"] == "sound"]
 assert any(p["best"] for p in points if p["scene"] == "chain"), points
