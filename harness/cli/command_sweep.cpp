@@ -37,11 +37,11 @@ void warn_if_busy(const json& context) {
 SweepEvents shown(Progress& progress) {
   SweepEvents events;
   events.interrupted = interrupted;
-  events.point = [&progress, points = 0](const PointResult& p, std::size_t s,
-                                         std::size_t all) mutable {
-    progress.show(
-        (static_cast<double>(s) + 0.5) / static_cast<double>(all), counted(++points, "point"),
-        p.spec.id() + " " + (p.ok() ? duration_text(p.seconds()) + "/s" : to_string(p.status)));
+  events.point = [&progress, points = 0](const PointResult& p, double s, double all) mutable {
+    const std::string found = !p.ok()             ? to_string(p.status)
+                              : p.samples.empty() ? "no time"
+                                                  : duration_text(p.seconds()) + "/s";
+    progress.show((s + 0.5) / all, counted(++points, "point"), p.spec.id() + " " + found);
   };
   events.repetition = [&progress, first = true](std::size_t done, std::size_t all) mutable {
     if (std::exchange(first, false)) progress.begin_part();
@@ -246,7 +246,7 @@ struct RepeatCommand {
   static void begin(Journal& journal, const json& document, const json& context) {
     const json header = {{"schema", "inextensible-journal/2"},
                          {"occasion", document.at("context").value("occasions", json::array())},
-                         {"program", context.at("build")},
+                         {"program", context.at("build").at("binary")},
                          {"processor", context.at("cpu_model")}};
     if (journal.header() == header)
       journal.go_on(header);
