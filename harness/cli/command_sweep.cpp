@@ -13,16 +13,12 @@
 namespace harness {
 namespace {
 
-// Probes the machine's noise between runs, and retakes disturbed samples while the budget lasts.
+// Probes the machine's noise between runs.
 Runner watched(const Runner& inner, NoiseProbe& noise_probe, bool timed) {
-  const auto budget = std::make_shared<RetakeBudget>();
   return [=, &noise_probe](const PointSpec& spec, RunLimits limits) {
     limits.timed = timed;
-    limits.most_retaken = budget->most();
     noise_probe.sample_if_due();
-    PointResult result = inner(spec, limits);
-    budget->add(result.samples.size(), result.retaken);
-    return result;
+    return inner(spec, limits);
   };
 }
 

@@ -104,7 +104,7 @@ Trials try_contestants(const Suite& suite, const std::vector<Search>& searches, 
   until.interrupted = stop_at(limits, search_share);
   // On a busy machine, retaking samples takes most of the time. Finalists have more samples.
   const auto run_once = [&run](const PointSpec& spec, RunLimits own) {
-    own.most_retaken = 0;
+    own.longest_wait = 0;
     return run(spec, own);
   };
   SweepOutcome outcome = run_sweep(suite, ordered, until, run_once);

@@ -1,37 +1,31 @@
 #include "harness/run/machine_noise.h"
 
+#include "harness/base/statistics.h"
+
 namespace harness {
-namespace {
-
-constexpr std::size_t doubles = 32768;
-constexpr int first_looks = 10;
-
-// A recurrence that waits for every result, over an array that fills the second-level cache.
-double recurrence(std::vector<double>& data, int passes) {
-  double carried = 1;
-  for (int pass = 0; pass < passes; ++pass)
-    for (double& value : data) {
-      carried = 0.5 * value + 0.25 * carried;
-      value = 1 + 1e-9 * carried;
-    }
-  return carried;
-}
-
-}  // namespace
-
+// Independent operations in the first-level cache: whoever shares the core's units, such as another
+// virtual machine on the sibling hyperthread, doubles its time. A recurrence, which waits for its
+// own results, would hardly notice, while solvers lose as much as this work does.
 double fixed_work() {
-  static std::vector<double> data(doubles, 1.0);
-  double carried = recurrence(data, 1);
+  static std::array<double, 2048> data{};
   const auto start = Clock::now();
-  carried += recurrence(data, 10);
-  return since(start) + 0 * carried;
+  for (int pass = 0; pass < 300; ++pass) {
+    for (double& value : data) value = 0.5 * value + 0.5;
+    asm volatile("" ::"r"(data.data()) : "memory");  // so that no pass is left out
+  }
+  return since(start);
 }
 
 double QuietProbe::look() {
-  if (least_ == std::numeric_limits<double>::infinity())
-    for (int i = 0; i < first_looks; ++i) least_ = std::min(least_, work_());
   const double seconds = work_();
   least_ = std::min(least_, seconds);
+  return seconds;
+}
+
+double QuietProbe::wait(double longest) {
+  const auto start = Clock::now();
+  double seconds = look();
+  while (disturbed(seconds) && since(start) < longest) seconds = look();
   return seconds;
 }
 
@@ -40,19 +34,13 @@ QuietProbe& quiet_probe() {
   return probe;
 }
 
-// Takes about 50 ms, to notice other users of the processor, who get turns of a few milliseconds.
+// Takes about half a second, longer than others use the core at a time.
 void NoiseProbe::sample() {
-  constexpr int runs = 50;
-  work_();
-  double sum = 0, least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < runs; ++i) {
-    const double seconds = work_();
-    sum += seconds;
-    least = std::min(least, seconds);
-  }
+  std::vector<double> looks(5000);
+  for (double& seconds : looks) seconds = work_();
   at_.push_back(since(start_));
-  seconds_.push_back(sum / runs);
-  quiet_probe().renew(least);
+  seconds_.push_back(quantile(looks, 0.25));
+  quiet_probe().renew(quantile(looks, 0));
 }
 
 void NoiseProbe::sample_if_due() {

@@ -13,20 +13,22 @@
 
 namespace harness {
 
-// Takes about a millisecond for work like a solver's, in the second-level cache; s.
+// Takes about 0.1 ms for work like a solver's; s.
 double fixed_work();
 
 class QuietProbe {
  public:
   // A look that took more than this many times the shortest one was disturbed.
-  static constexpr double disturbed_from = 1.05;
+  static constexpr double disturbed_from = 1.1;
   static constexpr int most_retaken = 3;  // times that one sample is taken again
 
   using Work = std::function<double()>;  // does the work; s that it took
   explicit QuietProbe(Work work = fixed_work) : work_(std::move(work)) {}
 
-  // Works once; s. The very first look works several times, to learn what is usual.
+  // Works once; s.
   double look();
+  // Looks until one is undisturbed, or for `longest` seconds; the last one's time, s.
+  double wait(double longest);
   // least: the least time of a long look, s. It replaces what was seen before the last long look,
   // since a processor may change its clock rate for good.
   void renew(double least) { least_ = std::min(std::exchange(renewed_, least), least); }
@@ -41,41 +43,26 @@ class QuietProbe {
 // The probe of this process and its children.
 QuietProbe& quiet_probe();
 
-// How often samples of a sweep may still be taken again: no longer once more than a quarter of them
-// were, since on a machine that is never quiet this only takes time.
-class RetakeBudget {
- public:
-  int most() const { return 4 * retaken_ > samples_ + granted ? 0 : QuietProbe::most_retaken; }
-  void add(std::size_t samples, int retaken) {
-    samples_ += static_cast<double>(samples);
-    retaken_ += retaken;
-  }
-
- private:
-  static constexpr double granted = 80;  // samples, before any was taken
-  double samples_ = 0, retaken_ = 0;
-};
-
-// The first of take()'s samples with undisturbed looks before and after it; after `most` more tries
-// the one whose worse look was the shortest. Also returns how many were dropped in all.
-// again(sample): whether it may be replaced; retaken: how many were dropped before.
+// The first of take()'s samples with undisturbed looks before and after it; after most_retaken more
+// the one whose worse look was the shortest. Also returns how many were dropped. again(sample): it
+// may be replaced. longest_wait: s, for an undisturbed look before a try.
 template <class Take, class Again>
-auto take_quietly(QuietProbe& probe, Take take, Again again, int retaken = 0,
-                  int most = QuietProbe::most_retaken) {
+auto take_quietly(QuietProbe& probe, Take take, Again again, double longest_wait) {
   using Sample = decltype(take());
   std::optional<Sample> calmest;
   double calm = std::numeric_limits<double>::infinity();
-  for (double before = probe.look();;) {
+  double before = probe.wait(longest_wait);
+  for (int dropped = 0;; ++dropped) {
     Sample sample = take();
     const double after = probe.look(), worse = std::max(before, after);
-    const bool last = !again(sample) || !probe.disturbed(worse) || retaken >= most;
+    const bool last =
+        !again(sample) || !probe.disturbed(worse) || dropped == QuietProbe::most_retaken;
     if (!calmest || worse < calm || !again(sample)) {
       calmest = std::move(sample);
       calm = worse;
     }
-    if (last) return std::pair(std::move(*calmest), retaken);
-    ++retaken;
-    before = after;
+    if (last) return std::pair(std::move(*calmest), dropped);
+    before = probe.disturbed(after) ? probe.wait(longest_wait) : after;
   }
 }
 
@@ -97,7 +84,7 @@ class NoiseProbe {
  private:
   QuietProbe::Work work_;
   Clock::time_point start_ = Clock::now();
-  std::vector<double> at_, seconds_;  // s since construction; the work's mean time
+  std::vector<double> at_, seconds_;  // s since construction; of the work in a quieter quarter
 };
 
 }  // namespace harness

@@ -2,6 +2,7 @@
 
 #include <fstream>
 #include <new>
+#include <numeric>
 
 #include "harness/judge/mechanics.h"
 #include "harness/run/calibration.h"
@@ -13,6 +14,8 @@ namespace {
 
 // A shorter judged step is timed again without the judge.
 constexpr double shortest_judged_step = 5e-5;  // s: four phases and the step itself are timed
+constexpr double several = 2.5;                // runs that a later sample of long runs is
+constexpr double longest_sample = 10;          // s, of such a sample
 constexpr double least_filter_sample = 0.005;  // s, of a run with short steps
 
 // Peak resident size of this process since the last reset; 0 where the system does not tell.
@@ -28,12 +31,19 @@ double peak_rss_bytes() {
 struct Batch {
   Run last;
   double seconds = 0, cpu_seconds = 0, filter_seconds = 0;  // of all runs
+  std::vector<double> parts;                                // s, the shortest among all runs
   int runs = 0;
 
   bool ok() const { return last.status == PointStatus::ok; }
+  // s of one run: disturbances only lengthen a run, and hardly the same part of each.
+  double a_run() const { return std::accumulate(parts.begin(), parts.end(), 0.0); }
   void add(Run run) {
     last = std::move(run);
     seconds += last.seconds;
+    if (runs > 0 && parts.size() == last.parts.size())
+      std::ranges::transform(parts, last.parts, parts.begin(), std::ranges::min);
+    else if (runs == 0 || last.seconds < a_run())
+      parts = last.parts;
     cpu_seconds += last.cpu_seconds;
     filter_seconds += last.stepper->phases().filter;
     ++runs;
@@ -52,17 +62,17 @@ struct Sampler {
   Samples& taken;            // gets the samples
   PhaseSeconds phases = {};  // of the filter sample
 
-  // Takes a sample and returns the last run, perhaps a failed one. retaken: tries dropped before.
-  Run add(int retaken) {
+  // Takes a sample and returns the last run, perhaps a failed one.
+  Run add() {
     if (short_steps) {
       Batch in_phases = batch(least_filter_sample, true);
       if (!in_phases.ok()) return std::move(in_phases.last);
       record_filter(in_phases);
     }
     const auto take = [this] { return batch(least_sample, !short_steps); };
-    auto [sample, dropped] = limits.timed ? take_quietly(quiet_probe(), take, may_be_retaken,
-                                                         retaken, limits.most_retaken)
-                                          : std::pair(take(), 0);
+    const double wait = limits.timed ? limits.longest_wait : 0;
+    auto [sample, dropped] =
+        wait > 0 ? take_quietly(quiet_probe(), take, may_be_retaken, wait) : std::pair(take(), 0);
     taken.retaken += dropped;
     return record(std::move(sample));
   }
@@ -78,11 +88,13 @@ struct Sampler {
     return std::move(sample.last);
   }
 
-  // As many runs as take at least that long together, s.
+  // As many runs as take at least that long together, s; of one more sample of long runs, several.
   Batch batch(double at_least, bool with_phases) {
     Batch batch;
     do {
       batch.add(runner.run(settings, false, diverged_strain, with_phases));
+      if (limits.sample_of && batch.runs == 1 && batch.seconds >= longest_retaken)
+        at_least = std::min(several * batch.seconds, longest_sample);
     } while (limits.timed && batch.ok() && batch.seconds < at_least);
     return batch;
   }
@@ -92,8 +104,9 @@ struct Sampler {
     taken.filter_samples.push_back(of_a_second(batch.filter_seconds, batch));
   }
 
+  // seconds: of all runs of a batch. Returns those of a simulated second in its composed run.
   double of_a_second(double seconds, const Batch& batch) const {
-    return seconds / batch.runs / (runner.steps() * runner.spec().step);
+    return seconds / batch.seconds * batch.a_run() / (runner.steps() * runner.spec().step);
   }
 };
 
@@ -124,15 +137,13 @@ bool calibrate(PointResult& point, const PointRunner& runner, Settings& settings
   return point.stiffness.has_value();
 }
 
-// The judged run, and a first sample: the same run if it is long enough and undisturbed, and if the
-// judge saw no iterates, which are kept while the clock runs.
+// The judged run, and a first sample: the same run if it is long enough, and if the judge saw no
+// iterates, which are kept while the clock runs.
 void measure(PointResult& point, const PointRunner& runner, const Settings& settings,
              const RunLimits& limits) {
-  const bool timed = limits.timed;
-  const double before = timed ? quiet_probe().look() : 0;
+  if (limits.timed) quiet_probe().wait(limits.longest_wait);
   Batch judged;
   judged.add(runner.run(settings, true, diverged_strain));
-  const double after = timed ? quiet_probe().look() : 0;
   static_cast<RunOutcome&>(point) = judged.last;
   point.phases = judged.last.stepper->phases();
   point.work = judged.last.stepper->work();
@@ -141,11 +152,8 @@ void measure(PointResult& point, const PointRunner& runner, const Settings& sett
   const bool short_steps = judged.last.seconds / runner.steps() < shortest_judged_step;
   Sampler sampler{point, runner, settings, short_steps, limits, point};
   const bool a_sample =
-      !judged.last.observed && !short_steps && (!timed || judged.seconds >= least_sample);
-  const bool disturbed = timed && limits.most_retaken > 0 && may_be_retaken(judged) &&
-                         quiet_probe().disturbed(std::max(before, after));
-  const Run last =
-      a_sample && !disturbed ? sampler.record(std::move(judged)) : sampler.add(a_sample ? 1 : 0);
+      !judged.last.observed && !short_steps && (!limits.timed || judged.seconds >= least_sample);
+  const Run last = a_sample ? sampler.record(std::move(judged)) : sampler.add();
   if (!point.filter_samples.empty()) point.phases = sampler.phases;
   point.end(last.status, last.detail);  // without a time it is not a result
 }
@@ -156,7 +164,7 @@ void take_sample(PointResult& more, const RunLimits& limits) {
   if (point.stiffness) settings["stiffness"] = *point.stiffness;
   const PointRunner runner(point.spec, limits);
   const bool short_steps = point.seconds() * point.spec.step < shortest_judged_step;
-  Sampler{point, runner, settings, short_steps, limits, more}.add(0);
+  Sampler{point, runner, settings, short_steps, limits, more}.add();
 }
 
 void look(PointResult& point, const RunLimits& limits) {

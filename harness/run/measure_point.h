@@ -11,7 +11,7 @@ struct Heartbeat;
 struct Scene;
 
 inline constexpr double least_sample = 0.02;  // s: a thousand times a block of steps
-// s. In longer samples, disturbances hardly show, and looks say little about the time between.
+// s. Looks before and after a longer sample say little about the time between.
 inline constexpr double longest_retaken = 0.25;
 
 inline constexpr double usual_look = 0.1;  // s
@@ -28,8 +28,8 @@ struct RunLimits {
   const Scene* scene = nullptr;                // the spec's, where it has been built already
   std::optional<double> stiffness_guess = {};  // N; where a calibration begins, if one is needed
   Heartbeat* heartbeat = nullptr;              // notified of every step; see child_process.h
-  int most_retaken = 3;                        // times that a sample may be taken again
-  bool timed = true;                           // false: times are not used, and one run is a sample
+  double longest_wait = 0.5;  // s, for a quiet core before a sample; 0: it is taken as it comes
+  bool timed = true;          // false: times are not used, and one run is a sample
   // Not null: only one more sample of this point is taken, without the judge.
   const PointResult* sample_of = nullptr;
   // true: steps for about `hopeless` seconds only. Their time is the point's one sample if a step
@@ -39,9 +39,10 @@ struct RunLimits {
 };
 
 // One judged run and a first sample of its time; or only one more sample, or a look. A sample is
-// the mean time of as many runs as take least_sample together. It is taken again if the machine was
-// disturbed (machine_noise.h) and it is not longer than longest_retaken. A run that failed has
-// none. Throws only Interrupted: any other failure is the point's status.
+// composed of as many runs as take least_sample together, and later ones of up to three runs above
+// longest_retaken: each part of the run counts with its shortest time. It is taken again if the
+// machine was disturbed (machine_noise.h) and it is not longer than longest_retaken. A run that
+// failed has none. Throws only Interrupted: any other failure is the point's status.
 PointResult run_point(const PointSpec& spec, const RunLimits& limits);
 
 }  // namespace harness

@@ -7,6 +7,7 @@
 #include "harness/judge/judge.h"
 #include "harness/judge/mechanics.h"
 #include "harness/run/calibration.h"
+#include "harness/run/machine_noise.h"
 
 namespace harness {
 namespace {
@@ -16,15 +17,14 @@ namespace {
 constexpr double least_motion = 0.5;
 
 constexpr int sampled_instants = 100;  // a run, for statistics that need sorting
-
+constexpr double work_patience = 4;    // nominal times are right within a factor of two only
 // Reading the clock takes tens of nanoseconds, the step of a short chain a few hundred: without the
 // judge, steps are timed in blocks of at least this length.
 constexpr double shortest_block = 2e-5;  // s
 
-// Nominal times are right within a factor of two only.
-constexpr double work_patience = 4;
-
-constexpr double rounding = 1e-6;  // of a frame: times add up their steps
+constexpr double between_looks = 0.005;  // s of stepping
+constexpr double longest_pauses = 5;     // s of a run, and no longer than its steps took
+constexpr double rounding = 1e-6;        // of a frame: times add up their steps
 
 std::string refusal(const StepResult& result, std::int64_t step, double time) {
   const bool edge_known = result.worst_edge >= 0 && std::isfinite(result.worst_strain);
@@ -87,6 +87,7 @@ class PointRunner::Observed : public Observer {
 
   int before(const State& state, const DriveState& /*driven*/) {
     if (judge_) judge_->before(state, spec_.step);
+    if (limits_.timed && part_ == RunPart::measured && run_.seconds >= next_look_) pause();
     cpu_begin_ = thread_seconds();
     begin_ = Clock::now();
     return block_;
@@ -103,6 +104,10 @@ class PointRunner::Observed : public Observer {
     const double seconds = since(begin_);
     if (run_.seconds == 0) run_.first_step_seconds = seconds;
     run_.seconds += seconds;
+    const std::int64_t steps = runner_.steps_, done = std::max(driven.steps - 1, 0L);
+    const auto part = static_cast<std::size_t>(done * std::min(steps, Run::most_parts) / steps);
+    run_.parts.resize(part + 1);  // never less than before
+    run_.parts.back() += seconds;
     const double cpu_seconds = thread_seconds() - cpu_begin_;
     if (judge_) run_.cpu_seconds += cpu_seconds;
     const double time = state.time - runner_.first_state_.time;
@@ -122,11 +127,14 @@ class PointRunner::Observed : public Observer {
   void finish(const DriveState& driven, double time) {
     if (run_.status == PointStatus::ok) tell_end(driven, time);
     run_.frame_times = frames_.summary();
+    if (block_ > 1) run_.parts = {run_.seconds};
     if (!judge_) return;
     run_.stepper->observe(nullptr);
     run_.measures = judge_->finish();
     if (run_.status == PointStatus::ok) decide();
   }
+
+  double paused() const { return paused_; }
 
  private:
   Judge::Options judging() const {
@@ -139,6 +147,14 @@ class PointRunner::Observed : public Observer {
   }
 
   bool keeps_strain() const { return backend_.strain_control != StrainControl::none; }
+
+  // Lets a long run go on when nobody else uses the core.
+  void pause() {
+    next_look_ = run_.seconds + between_looks;
+    const auto start = Clock::now();
+    quiet_probe().wait(std::min(run_.seconds, longest_pauses) - paused_);
+    paused_ += since(start);
+  }
 
   // Whether the strain of a step ends the run.
   bool overstrained(double strain) {
@@ -198,7 +214,8 @@ class PointRunner::Observed : public Observer {
   Run& run_;
   std::optional<Judge> judge_;
   FrameTimes frames_{spec_.step};
-  int block_ = 1;  // steps that are timed as one
+  double next_look_ = between_looks, paused_ = 0;  // s of stepping, and of looks and pauses
+  int block_ = 1;                                  // steps that are timed as one
   double cpu_begin_ = 0;
   Clock::time_point begin_;
 };
@@ -219,7 +236,7 @@ Run PointRunner::run(const Settings& settings, bool judged, double stop_at, bool
   const double cpu_begin = thread_seconds();
   const DriveState driven = drive(*run.stepper, state, {spec_.step, steps_, 0}, observer,
                                   {limits_.timeout, start, limits_.interrupted});
-  if (!judged) run.cpu_seconds = thread_seconds() - cpu_begin;
+  if (!judged) run.cpu_seconds = thread_seconds() - cpu_begin - observer.paused();
   observer.finish(driven, state.time);
   return run;
 }

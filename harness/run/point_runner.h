@@ -28,7 +28,12 @@ class FrameTimes {
 };
 
 struct Run : RunOutcome {
+  static constexpr std::int64_t most_parts = 100;
+
   double seconds = 0;  // of stepping alone
+  // s of up to `most_parts` equal parts of the run; one if its steps are so short that several of
+  // them are timed as one.
+  std::vector<double> parts;
   double first_step_seconds = 0;
   double cpu_seconds = 0;  // of the thread, the same
   std::unique_ptr<Stepper> stepper;

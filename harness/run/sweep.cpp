@@ -116,7 +116,8 @@ struct Repeated {
   int tries, least;  // samples
 };
 
-// One sample of each per round, in a shuffled order, until each has enough.
+// One sample of each per round, in a shuffled order, until each has enough. As they are taken at
+// different times and the shortest counts, none waits for a quiet core.
 void repeat_in_rounds(const Suite& suite, std::vector<Repeated> round,
                       std::vector<PointResult>& points, const SweepEvents& events,
                       const Runner& run) {
@@ -137,7 +138,7 @@ void repeat_in_rounds(const Suite& suite, std::vector<Repeated> round,
     std::ranges::shuffle(round, random);
     for (Repeated& one : round) {
       add_sample(points[one.point], run,
-                 {.timeout = suite.timeout, .interrupted = events.interrupted});
+                 {.timeout = suite.timeout, .interrupted = events.interrupted, .longest_wait = 0});
       ++one.tries;
       events.repetition(++done, all);
     }

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "harness/run/calibration.h"
 #include "harness/run/fake_machine.h"
 #include "harness/run/machine_noise.h"
@@ -23,12 +25,12 @@ TEST(Batches, ASampleOfAShortRunTakesAtLeastTwentyMilliseconds) {
   ASSERT_EQ(point.filter_samples.size(), 4u);
   for (std::size_t i = 0; i < 4; ++i) {
     const double a_run = point.samples[i] * point.spec.step * point.steps_planned;
-    EXPECT_GE(a_run * point.sample_runs[i], least_sample * (1 - 1e-9));
+    // Its shortest run counts, while others may have been disturbed.
+    EXPECT_GE(a_run * point.sample_runs[i], 0.2 * least_sample);
     EXPECT_GT(point.cpu_samples[i], 0);
     // Reads of the clock between blocks of steps are part of it, and not of the wall time.
     EXPECT_LT(point.cpu_samples[i], 1.5 * point.samples[i]);
   }
-  EXPECT_GE(point.measured_seconds(), 4 * least_sample * (1 - 1e-9));
   EXPECT_EQ(point.seconds(), *std::ranges::min_element(point.samples));
 }
 
@@ -40,6 +42,20 @@ TEST(Batches, AnUntimedSampleIsOneRun) {
   EXPECT_EQ(point.sample_runs, (std::vector<int>{1, 1}));
   EXPECT_EQ(point.retaken, 0);
   EXPECT_EQ(run_point(spec, {}).work, point.work);
+}
+
+// A run's parts are its time; of several runs, each part's shortest time counts.
+TEST(PointRunner, ItsPartsAddUp) {
+  for (const int steps : {20, 200, 2000}) {
+    PointSpec spec = spec_at("drape", {{"n", 11}, {"duration", 0.2}}, "fast_projection", 0.01);
+    spec.step = 0.2 / steps;
+    const RunLimits limits;
+    const auto done = PointRunner(spec, limits).run({}, true, diverged_strain);
+    EXPECT_EQ(std::ssize(done.parts), std::min(100, steps));
+    EXPECT_GT(std::ranges::min(done.parts), 0);
+    const double sum = std::accumulate(done.parts.begin(), done.parts.end(), 0.0);
+    EXPECT_NEAR(sum, done.seconds, 1e-9 * done.seconds);
+  }
 }
 
 // Two runs of one command agree: a calibration is limited by work, not time.
@@ -149,37 +165,27 @@ TEST(EnergyRise, FailsAShakingCloth) {
   EXPECT_GT(point.measures.energy_rise, 0.05);
 }
 
-// Samples are 1, 2, 3, ... and looks take what a list says, in ms; the first ten are quiet ones.
+// Samples are 1, 2, 3, ... and looks take what a list says, in ms.
 TEST(QuietSamples, ADisturbedLookOnEitherSideTakesItAgainUpToThreeTimes) {
   const struct {
     const char* what;
+    double wait;
     std::vector<double> looks;
-    int dropped, sample, retaken;
-  } rows[] = {{"before", {1.06, 1.0, 1.0}, 0, 2, 1},
-              {"after, which is before the next one, too", {1.0, 1.06, 1.0, 1.0}, 0, 3, 2},
-              {"the calmest stands, between 1.2 and 1.3", {2.0, 1.5, 1.2, 1.3, 3.0}, 0, 3, 3},
-              {"one was dropped before", {2.0, 1.5, 1.2, 1.3}, 1, 3, 3}};
-  for (const auto& [what, looks, dropped, sample, retaken] : rows) {
-    int samples = 0, warm = 0;
+    int sample, dropped;
+  } rows[] = {{"before", 1e-12, {1.11, 1.0, 1.0}, 2, 1},
+              {"after", 1e-12, {1.0, 1.11, 1.2, 1.0, 1.0}, 3, 2},
+              {"the calmest", 1e-12, {2.0, 1.5, 1.2, 1.3, 1.2, 1.2, 2.0, 3.0}, 3, 3},
+              {"a wait ends with a calm look", 100, {2.0, 1.5, 1.0, 2.0, 3.0, 1.0, 1.0}, 2, 1}};
+  for (const auto& [what, wait, looks, sample, dropped] : rows) {
+    int samples = 0;
     std::size_t seen = 0;
-    QuietProbe probe([&, &list = looks] { return ++warm <= 10 ? 1e-3 : 1e-3 * list.at(seen++); });
-    const auto [taken, again] = take_quietly(
-        probe, [&] { return ++samples; }, [](int) { return true; }, dropped);
-    EXPECT_EQ(taken, sample) << what;
-    EXPECT_EQ(again, retaken) << what;
+    QuietProbe probe([&, &list = looks] { return 1e-3 * list.at(seen++); });
+    probe.renew(1e-3);
+    const auto taken = take_quietly(
+        probe, [&] { return ++samples; }, [](int) { return true; }, wait);
+    EXPECT_EQ(taken, std::pair(sample, dropped)) << what;
     EXPECT_EQ(seen, looks.size()) << what;
   }
-}
-
-TEST(QuietSamples, NoMoreThanAQuarterOfAllAreTakenAgain) {
-  RetakeBudget budget;
-  EXPECT_EQ(budget.most(), QuietProbe::most_retaken);
-  budget.add(100, 45);
-  EXPECT_EQ(budget.most(), QuietProbe::most_retaken);
-  budget.add(1, 3);
-  EXPECT_EQ(budget.most(), 0);
-  budget.add(100, 0);
-  EXPECT_EQ(budget.most(), QuietProbe::most_retaken);
 }
 
 TEST(QuietSamples, TheUsualTimeIsLearnedAgain) {
@@ -198,13 +204,11 @@ TEST(QuietSamples, TheUsualTimeIsLearnedAgain) {
   EXPECT_FALSE(probe.disturbed(probe.look()));
 }
 
-// Others take the processor every tenth time, for a turn of some milliseconds.
+// Others leave the core alone every tenth time only.
 TEST(NoiseProbe, SeesThatOthersTakeTheProcessor) {
   bool shared = false;
   int turn = 0;
-  NoiseProbe noise_probe([&] { return shared && ++turn % 10 == 0 ? 5e-3 : 1e-3; });
-  EXPECT_EQ(noise_probe.spread(), 0);
-  EXPECT_FALSE(noise_probe.noisy());
+  NoiseProbe noise_probe([&] { return shared && ++turn % 10 > 0 ? 5e-3 : 1e-3; });
   noise_probe.sample();
   noise_probe.sample();
   EXPECT_FALSE(noise_probe.noisy());
