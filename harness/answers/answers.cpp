@@ -1,5 +1,4 @@
 // The known answers of configs/answers.json, and what solvers make of them.
-
 #include "harness/answers/answer.h"
 #include "harness/base/child_process.h"
 #include "harness/base/table.h"

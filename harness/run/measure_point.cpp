@@ -14,7 +14,7 @@ namespace {
 
 // A shorter judged step is timed again without the judge.
 constexpr double shortest_judged_step = 5e-5;  // s: four phases and the step itself are timed
-constexpr double several = 2.5;                // runs that a later sample of long runs is
+constexpr double several = 2.5;                // long runs that a later sample takes
 constexpr double longest_sample = 10;          // s, of such a sample
 constexpr double least_filter_sample = 0.005;  // s, of a run with short steps
 

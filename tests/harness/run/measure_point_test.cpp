@@ -25,8 +25,7 @@ TEST(Batches, ASampleOfAShortRunTakesAtLeastTwentyMilliseconds) {
   ASSERT_EQ(point.filter_samples.size(), 4u);
   for (std::size_t i = 0; i < 4; ++i) {
     const double a_run = point.samples[i] * point.spec.step * point.steps_planned;
-    // Its shortest run counts, while others may have been disturbed.
-    EXPECT_GE(a_run * point.sample_runs[i], 0.2 * least_sample);
+    EXPECT_GE(a_run * point.sample_runs[i], 0.2 * least_sample);  // the shortest run counts
     EXPECT_GT(point.cpu_samples[i], 0);
     // Reads of the clock between blocks of steps are part of it, and not of the wall time.
     EXPECT_LT(point.cpu_samples[i], 1.5 * point.samples[i]);
@@ -209,6 +208,8 @@ TEST(NoiseProbe, SeesThatOthersTakeTheProcessor) {
   bool shared = false;
   int turn = 0;
   NoiseProbe noise_probe([&] { return shared && ++turn % 10 > 0 ? 5e-3 : 1e-3; });
+  EXPECT_EQ(noise_probe.spread(), 0);
+  EXPECT_FALSE(noise_probe.noisy());
   noise_probe.sample();
   noise_probe.sample();
   EXPECT_FALSE(noise_probe.noisy());
