@@ -82,7 +82,8 @@ constexpr double calibration_tolerance = 0.85;  // of the limit, the least strai
 
 bool calibrated(const Point& p) {
   return p.contestant() == implicit_springs.name && p.ok() && p.sweep() == "strain" &&
-         std::isfinite(p.stiffness()) && std::isfinite(tension_over_weight(p)) &&
+         !p.collides_last() && std::isfinite(p.stiffness()) &&
+         std::isfinite(tension_over_weight(p)) &&
          p.measures().max_strain >= 0.999 * calibration_tolerance * p.strain_limit();
 }
 

@@ -83,8 +83,9 @@ Curve Points::best(const std::string& scene, const std::string& sweep, const std
                    const Question& question, std::optional<double> vertices) const {
   const bool strain = sweep == "strain";
   std::vector<Point> chosen;
-  std::ranges::copy_if(all, std::back_inserter(chosen),
-                       [&](const Point& p) { return p.scene() == scene && p.sweep() == sweep; });
+  std::ranges::copy_if(all, std::back_inserter(chosen), [&](const Point& p) {
+    return p.scene() == scene && p.sweep() == sweep && !p.collides_last();
+  });
   if (sweep != "resolution" && !chosen.empty()) {
     const double size =
         vertices ? *vertices : std::ranges::max(chosen, {}, &Point::vertices).vertices();

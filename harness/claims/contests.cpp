@@ -130,7 +130,7 @@ Steps steps_of(const Points& points, const Point& best, double level) {
   Steps steps{step, step, step};
   for (const Point& p : points.all) {
     if (!p.ok() || !p.timed() || p.contestant() != best.contestant() || p.scene() != best.scene() ||
-        p.sweep() != best.sweep() || p.vertices() != best.vertices() ||
+        p.collides_last() || p.sweep() != best.sweep() || p.vertices() != best.vertices() ||
         p.strain_limit() != best.strain_limit() || !p.within_error(level) ||
         (p.id() != best.id() && above(ratio(p, best), 1) == Answer::yes))
       continue;

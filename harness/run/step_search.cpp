@@ -15,8 +15,10 @@ constexpr double hopeless_factor = 3, patient_factor = 30;
 // Cloth may settle into the same wrong folds at several coarse steps before a finer one is right.
 constexpr double stays = 0.85;
 constexpr int longest_stay = 5;
-// Timeouts that end a walk; more before a run was ok, as some iterate longest at coarse steps.
-constexpr int most_timeouts = 2, most_first_timeouts = 4;
+// Timeouts that end a walk. As some methods iterate longest at coarse steps, one that gets farther
+// than the one before by this factor does not count.
+constexpr int most_timeouts = 2;
+constexpr double farther = 1.1;
 constexpr double never = std::numeric_limits<double>::infinity();
 
 // A point whose calibration timed out is skipped.
@@ -82,7 +84,7 @@ class StepSearch {
 
   void walk(std::size_t from, int direction) {
     int rises = 0, timeouts = 0;
-    double last_error = never;
+    double last_error = never, reached = never;  // reached: simulated time at the last timeout
     error_stays_ = failures_ = 0;
     for (std::size_t rung = from; rung < ladder_.rungs;
          rung += ladder_.stride * static_cast<std::size_t>(direction)) {  // wraps below 0
@@ -95,14 +97,17 @@ class StepSearch {
       else if (best_rung(any_motion) == rung)
         rises = 0;
       failures_ = point.ok() ? 0 : failures_ + 1;
-      if (gave_up(point)) ++timeouts;
+      if (gave_up(point)) {
+        const double time = static_cast<double>(point.work.steps) * point.spec.step;
+        if (!(time > farther * reached)) ++timeouts;
+        reached = time;
+      }
       if (point.ok() && goal_) {
         const double error = error_at(point.measures, *goal_).distance;
         error_stays_ = error > stays * last_error && error > *goal_ ? error_stays_ + 1 : 0;
         last_error = error;
       }
-      const int most = best_rung(any_motion) ? most_timeouts : most_first_timeouts;
-      if (timeouts >= most || (rises >= 2 && (direction < 0 || done(rung, point)))) return;
+      if (timeouts >= most_timeouts || (rises >= 2 && (direction < 0 || done(rung, point)))) return;
     }
   }
 

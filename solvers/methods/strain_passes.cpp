@@ -6,8 +6,8 @@
 // become the base, so that passes converge to any limit that double precision can test.
 //
 // Vectors. Edges come in groups of one color, one vector to each quantity of a group. A mask keeps
-// edges within the limit as they are; where a whole group is within it, which near convergence is
-// most of them, square roots and divisions are left out.
+// edges within the limit as they are; a group that is within it as a whole, as most are near
+// convergence, is left at once.
 #include "solvers/methods/strain_passes.h"
 
 #include <bit>
@@ -102,8 +102,6 @@ StrainPasses::StrainPasses(const Problem& problem, const StrainBand& band,
   bounds_.half = static_cast<float>(0.5 * (high - low) - room);
   bounds_.target_low = static_cast<float>(std::max(square(band.target_low), low + 2 * room));
   bounds_.target_high = static_cast<float>(std::min(square(band.target_high), high - 2 * room));
-  bounds_.per_low = 1 / (1 + bounds_.target_low);
-  bounds_.per_high = 1 / (1 + bounds_.target_high);
   using Key = std::array<float, sizeof(Constants) / sizeof(float)>;
   std::map<Key, int> known;
   for (int first = 0; first < edges_.entries(); first += width) {
@@ -230,21 +228,23 @@ std::int64_t StrainPasses::pass(Order order) {
   if (passes_ == passes_from_a_base) positions();
   settle_contacts();
   const bool middle = start_.rows() > 0;
-  if (order == Order::in_turn) return middle ? pass<true>(u_) : pass<false>(u_);
-  const std::int64_t corrected = middle ? pass<true>(correction_) : pass<false>(correction_);
+  if (order == Order::in_turn)
+    return middle ? pass<true, Order::in_turn>() : pass<false, Order::in_turn>();
+  const std::int64_t corrected =
+      middle ? pass<true, Order::at_once>() : pass<false, Order::at_once>();
   if (corrected == 0) return 0;
   u_ += correction_;
   correction_.setZero();
   return corrected;
 }
 
-// One pass, which adds the corrections to `to`. The first from a base measures it.
-template <bool middle>
-std::int64_t StrainPasses::pass(Displacements& to) {
+// One pass, which corrects u_ itself or adds to correction_. The first from a base measures it.
+template <bool middle, StrainPasses::Order order>
+std::int64_t StrainPasses::pass() {
   std::int64_t corrected = 0;
   for (const ColoredEdges::Block& block : edges_.blocks())
     corrected +=
-        block.adjacent ? pass<middle, Adjacent>(block, to) : pass<middle, Listed>(block, to);
+        block.adjacent ? pass<middle, order, Adjacent>(block) : pass<middle, order, Listed>(block);
   ++passes_;
   return corrected;
 }
@@ -271,16 +271,17 @@ struct StrainPasses::Arrays {
   float* to[3];
 };
 
-template <bool middle, class Ends>
-std::int64_t StrainPasses::pass(const ColoredEdges::Block& block, Displacements& to) {
+template <bool middle, StrainPasses::Order order, class Ends>
+std::int64_t StrainPasses::pass(const ColoredEdges::Block& block) {
   std::int64_t corrected = 0;
-  const Arrays arrays(*this, to);
-  for (int k = block.first; k < block.first + block.count; k += width) {
-    const Ends ends{edges_.a().data() + k, edges_.b().data() + k};
-    if (passes_ == 0) measure<middle>(k, ends);
+  const Arrays arrays(*this, order == Order::in_turn ? u_ : correction_);
+  const int *a = edges_.a().data(), *b = edges_.b().data();
+  const int end = block.first + block.count;
+  if (passes_ == 0)
+    for (int k = block.first; k < end; k += width) measure<middle>(k, Ends{a + k, b + k});
+  for (int k = block.first; k < end; k += width)
     for (int first = 0; first < width; first += at_once)
-      corrected += correct<middle>(k / width, first, ends, arrays);
-  }
+      corrected += correct<middle, order>(k / width, first, Ends{a + k, b + k}, arrays);
   return corrected;
 }
 
@@ -302,21 +303,13 @@ template <bool middle, class Ends>
       static_simd_cast<float>(m).copy_to(middles_[k / width].m[axis], element_aligned);
     }
   }
-  const Lanes<double> strain = square * lanes(inverse_square_.data() + k) - 1;
+  const Lanes<double> strain = square * lanes(&inverse_square_[k]) - 1;
   static_simd_cast<float>(strain).copy_to(group.strain, element_aligned);
-}
-
-// 1 - 1 / sqrt(1 + t), the part of an edge by which it is too long, by its Pade approximant: exact
-// to the rounding of single precision where |t| is at most `small_excess`.
-constexpr float small_excess = 0.1F;
-template <class Real>
-[[gnu::always_inline]] inline Real excess(const Real& t) {
-  return t * (0.5F + 0.25F * t) / (1 + t * (1.25F + 0.3125F * t));
 }
 
 // Adds to the ends what corrects the group's edges from `first` on; no place occurs twice.
 // `middle`: along the edges in the middle of the step.
-template <bool middle, class Ends>
+template <bool middle, StrainPasses::Order order, class Ends>
 [[gnu::always_inline]] inline int StrainPasses::correct(int k, int first, const Ends& ends,
                                                         const Arrays& arrays) {
   using simd::where;
@@ -326,13 +319,15 @@ template <bool middle, class Ends>
   const Bounds& bounds = arrays.bounds;
   const Group& group = arrays.groups[k];
   const Constants& constants = arrays.constants[arrays.constants_of[k]];
-  Some e[3], d[3];
+  Some at_a[3], at_b[3], e[3], d[3];
   Some growth = 0;
   const Some scale = some(constants.inverse_square);
   for (int axis = 0; axis < 3; ++axis) {
     const float* u = arrays.u[axis];
     const Some base = some(group.d[axis]);
-    e[axis] = ends.template read<at_once>(u, b) - ends.template read<at_once>(u, a);
+    at_a[axis] = ends.template read<at_once>(u, a);
+    at_b[axis] = ends.template read<at_once>(u, b);
+    e[axis] = at_b[axis] - at_a[axis];
     d[axis] = base + e[axis];
     growth += (base + d[axis]) * e[axis];
   }
@@ -342,37 +337,35 @@ template <bool middle, class Ends>
   const auto violated = abs(off) > bounds.half && strain != -1;
   const int violations = popcount(violated);
   if (violations == 0) return 0;
-  Some strained = strain - bounds.target_high, scaled = bounds.per_high;
+  Some strained = strain - bounds.target_high;
   where(off < 0, strained) = strain - bounds.target_low;
-  where(off < 0, scaled) = bounds.per_low;
-  Some s = strained * scaled;
-  if (!middle && all_of(abs(s) < small_excess)) {
-    s = excess(s);
-  } else {
-    Some q = 0;
-    for (int axis = 0; axis < 3; ++axis) q += d[axis] * d[axis];
-    Some along = q, square = q;
-    if constexpr (middle) {
-      Some m[3];
-      Some p = 0, r = 0;
-      for (int axis = 0; axis < 3; ++axis) {
-        m[axis] = some(arrays.middles[k].m[axis]) + 0.5F * e[axis];
-        p += d[axis] * m[axis];
-        r += m[axis] * m[axis];
-      }
-      const auto aligned = p > static_cast<float>(least_alignment) * q;
-      where(aligned, along) = p;
-      where(aligned, square) = r;
-      for (int axis = 0; axis < 3; ++axis) where(aligned, d[axis]) = m[axis];
+  Some q = 0;
+  for (int axis = 0; axis < 3; ++axis) q += d[axis] * d[axis];
+  Some along = q, square = q;
+  if constexpr (middle) {
+    Some m[3];
+    Some p = 0, r = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      m[axis] = some(arrays.middles[k].m[axis]) + 0.5F * e[axis];
+      p += d[axis] * m[axis];
+      r += m[axis] * m[axis];
     }
-    s = excess_along(strained, Some(along * scale), Some(square * scale));
+    const auto aligned = p > static_cast<float>(least_alignment) * q;
+    where(aligned, along) = p;
+    where(aligned, square) = r;
+    for (int axis = 0; axis < 3; ++axis) where(aligned, d[axis]) = m[axis];
   }
+  Some s = excess_along(strained, Some(along * scale), Some(square * scale));
   where(!violated, s) = 0;
   const Some sa = some(constants.share_a) * s, sb = some(constants.share_b) * s;
   for (int axis = 0; axis < 3; ++axis) {
     float* to = arrays.to[axis];
-    ends.write(ends.template read<at_once>(to, a) + sa * d[axis], to, a);
-    ends.write(ends.template read<at_once>(to, b) - sb * d[axis], to, b);
+    if constexpr (order == Order::at_once) {
+      at_a[axis] = ends.template read<at_once>(to, a);
+      at_b[axis] = ends.template read<at_once>(to, b);
+    }
+    ends.write(at_a[axis] + sa * d[axis], to, a);
+    ends.write(at_b[axis] - sb * d[axis], to, b);
   }
   return violations;
 }

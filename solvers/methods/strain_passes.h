@@ -135,21 +135,20 @@ class StrainPasses {
   struct Bounds {        // of q - 1
     float middle, half;  // of the band
     float target_low, target_high;
-    float per_low, per_high;  // 1 / q of the targets
   };
   using Places = ColoredEdges::Places;
   using Displacements = ColoredEdges::Displacements;
 
   void renew_planes(Iterate x, WorkCounters& work);
   void new_base();
-  template <bool middle>
-  std::int64_t pass(Displacements& to);
-  template <bool middle, class Ends>
-  std::int64_t pass(const ColoredEdges::Block& block, Displacements& to);
+  template <bool middle, Order order>
+  std::int64_t pass();
+  template <bool middle, Order order, class Ends>
+  std::int64_t pass(const ColoredEdges::Block& block);
   template <bool middle, class Ends>
   void measure(int k, const Ends& ends);
   struct Arrays;  // what a pass reads and moves
-  template <bool middle, class Ends>
+  template <bool middle, Order order, class Ends>
   static int correct(int k, int first, const Ends& ends, const Arrays& arrays);
 
   Contacts* contacts_ = nullptr;

@@ -23,9 +23,8 @@ constexpr std::size_t short_list = 8;
 // Whether vertex v is no deeper than `depth` behind the plane in row first_row + v.
 inline bool in_front(const Collider::Memory& memory, Eigen::Index first_row,
                      const Eigen::Matrix3Xd& x, Eigen::Index v, double depth) {
-  const double *plane = memory.data() + first_row + v, *p = x.data() + 3 * v;
-  const Eigen::Index n = memory.rows();
-  return plane[0] * p[0] + plane[n] * p[1] + plane[2 * n] * p[2] - plane[3 * n] >= -depth;
+  const double *plane = memory.data() + 4 * (first_row + v), *p = x.data() + 3 * v;
+  return plane[0] * p[0] + plane[1] * p[1] + plane[2] * p[2] - plane[3] >= -depth;
 }
 
 constexpr Eigen::Index asked_at_once = 8;
@@ -361,9 +360,9 @@ bool ClosedSurface::touches(std::span<const int> list, const Vector3d& p, double
     return true;
   }
   double distance = 0;
-  const double* least = planes_[least_behind(list, p, distance)].data();
-  for (int number = 0; number < 4; ++number) memory(row, number) = least[number];
-  plane.normal = {least[0], least[1], least[2]};
+  const Eigen::RowVector4d& least = planes_[least_behind(list, p, distance)];
+  memory.row(row) = least;
+  plane.normal = least.head<3>();
   plane.offset = least[3];
   return distance < -depth;
 }

@@ -44,7 +44,7 @@ class Collider {
   // What find() remembers of each vertex between calls, a row each for every piece of the
   // obstacle: normal and offset of a plane with the piece behind it. It makes calls cheaper, and
   // changes no answer.
-  using Memory = Eigen::MatrixX4d;
+  using Memory = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
   virtual Memory nothing_of(int vertices) const {  // planes with everything behind them
     Memory memory = Memory::Zero(vertices, 4);
     memory.col(3).setConstant(std::numeric_limits<double>::infinity());

@@ -37,8 +37,6 @@ class KktSolver {
   bool solve(const Positions& r, const Eigen::VectorXd& c, Positions& p, Eigen::VectorXd& q,
              WorkCounters& work);
 
-  double mean_mass() const { return mean_mass_; }
-
  protected:
   // Where iterative refinement of a solve ends, and what is good enough if that is not reached:
   // residuals relative to the right-hand side. Newton converges as well with the latter.

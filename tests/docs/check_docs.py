@@ -12,9 +12,7 @@ and that line of that file must then contain the text. Generated blocks end with
 
     <!-- references -->                         the committed references
     <!-- bench list NAME -->                    what `bench list NAME` prints
-    <!-- gaps PATTERN TIME ... -->              the parts of the gaps of the committed references that match, at these times
     <!-- steps RESULT.json LIMIT STEP ...; ... -->    time and largest error of every contestant at these steps
-    <!-- errors RESULT.json LIMIT CONTESTANT ... STEP ... -->   the largest error of these at each step
     <!-- claims -->                             the verdicts on the paper's claims
     <!-- orders ANSWERS.json NAME ... -->        the orders of convergence of these known answers
     <!-- methods HEADLINE, RESULT.json LIMIT, ... -->   each method's time as published and in its best stepper, within that error
@@ -42,7 +40,7 @@ LINK = re.compile(r"\]\(([^)\s]+)\)")
 BACKTICKS = re.compile(r"`([^`\n]+)`")
 PATH = re.compile(r"\.?[\w-][\w./*-]*/[\w./*-]*")
 NAMED_DOCUMENT = re.compile(r"[\w/.-]*\w\.md\b")
-BLOCK = re.compile(r"<!-- (references|bench list|methods|orders|gaps|steps|errors|claims)([^>:]*?) -->\n\n?.*?<!-- end of list -->", re.DOTALL)
+BLOCK = re.compile(r"<!-- (references|bench list|methods|orders|steps|claims)([^>:]*?) -->\n\n?.*?<!-- end of list -->", re.DOTALL)
 SURE = 3  # gaps of a reference
 SOURCES = ("solvers", "harness", "tests", "plots", "cmake", "configs")
 SOURCE_SUFFIXES = {".cpp", ".h", ".py", ".sh", ".cmake", ".txt", ".json"}
@@ -96,21 +94,6 @@ def references(_: str) -> str:
         alike = [f"`{path.stem}`" for path in alike]
         rows.append([" to ".join(sorted({alike[0], alike[-1]}, key=alike.index)), *until])
     return markdown(["reference", *(f"{100 * level:g} %" for level in levels)], rows)
-
-
-PARTS = {"routes": "first and second route", "third_route": "third route", "half_step": "first route at twice the step",
-         "second_half_step": "second route at twice the step", "moved_start": "start moved"}
-
-
-def gaps_of(words: str) -> str:
-    """In percent of the scene's size, at the sample time nearest to each."""
-    pattern, *times = words.split()
-    rows = []
-    for path in sorted((ROOT / "results/references").glob(f"{pattern}.json")):
-        file = json_of(path)
-        places = [min(range(len(file["times"])), key=lambda i: abs(file["times"][i] - float(time))) for time in times]
-        rows += [[f"`{path.stem}`", PARTS[part], *(f"{100 * gaps[i]:.2g}" for i in places)] for part, gaps in file["gap_parts"].items()]
-    return markdown(["reference", "distance, %", *(f"{float(time):g} s" for time in times)], rows)
 
 
 @functools.cache
@@ -201,18 +184,6 @@ def steps_of(words: str) -> str:
     return markdown(["contestant", *heads], [[f"`{c}`", *(text(column.get(c)) for column in columns)] for c in contestants])
 
 
-def errors_of(words: str) -> str:
-    """The largest of the whole run in percent of the scene's size, at each step; `-` where a run failed or there is none."""
-    file, limit, *rest = words.split()
-    contestants, steps = [word for word in rest if word[0].isalpha()], [float(word) for word in rest if not word[0].isalpha()]
-    errors = {(p["contestant"], step): p["error"]["trajectory"] for p in json_of(ROOT / file)["points"] for step in steps
-              if p["strain_limit"] == float(limit) and p["status"] == "ok" and math.isclose(p["step"], step)}
-
-    return markdown(["contestant", *(f"1/{1 / step:g} s" for step in steps)],
-                    [[f"`{c}`", *("-" if (error := errors.get((c, step))) is None else f"{100 * error:.2g}" for step in steps)]
-                     for c in contestants])
-
-
 def claims_of(words: str) -> str:
     """The verdict on each of the paper's claims, from all committed results."""
     files = sorted(str(file) for file in (ROOT / "results").glob("*.json") if file.name != "answers.json")
@@ -220,7 +191,7 @@ def claims_of(words: str) -> str:
     return markdown(["", "claim", "verdict"], [[f"{name}, {where}", claim, verdict] for name, where, claim, verdict in said])
 
 
-BLOCKS = {"references": references, "claims": claims_of, "bench list": table_of, "methods": methods_of, "orders": orders_of, "gaps": gaps_of, "steps": steps_of, "errors": errors_of}
+BLOCKS = {"references": references, "claims": claims_of, "bench list": table_of, "methods": methods_of, "orders": orders_of, "steps": steps_of}
 
 
 def with_tables(text: str) -> str:

@@ -22,6 +22,7 @@ struct FakeMachine {
   std::function<PointStatus(const PointSpec&)> status = [](const auto&) { return PointStatus::ok; };
   std::function<double(const PointSpec&)> error = nullptr;  // over the scene's size; null: unknown
   double gap = 0;                                           // of the reference
+  std::function<double(const PointSpec&)> reached = nullptr;  // s; where failed runs end
   std::function<double(const PointResult&)> again = [](const PointResult& point) {
     return point.samples.front();
   };
@@ -49,7 +50,10 @@ struct FakeMachine {
       }
       const double taken = seconds(spec);
       if (stops && point.ok() && taken > limits.hopeless) point.status = PointStatus::timeout;
-      if (point.ok()) point.samples = {taken};
+      if (point.ok())
+        point.samples = {taken};
+      else if (reached)
+        point.work.steps = std::lround(reached(spec) / spec.step);
       return point;
     };
   }
@@ -74,10 +78,8 @@ inline auto slowing(double factor) {
 }
 
 // Steps above 1/n s are refused.
-inline auto refused_above(double n) {
-  return [n](const PointSpec& spec) {
-    return spec.step * n > 1 + 1e-9 ? PointStatus::not_converged : PointStatus::ok;
-  };
+inline auto refused_above(double n, PointStatus as = PointStatus::not_converged) {
+  return [n, as](const PointSpec& spec) { return spec.step * n > 1 + 1e-9 ? as : PointStatus::ok; };
 }
 
 inline auto error_of_step(double slope) {
