@@ -2,10 +2,14 @@
 
 #include <set>
 
+#include "harness/run/measure_point.h"
+
 namespace harness {
 namespace {
 
-constexpr double clearly_slower = 1.5;
+// From this ratio of times on, one sample decides. Who else uses the machine can double a short
+// run's time.
+constexpr double clearly_slower = 1.5, clearly_slower_short = 2.5;
 constexpr double close_neighbor = 2;  // times the best time
 constexpr double noise = 1.03;        // smaller ratios of times count as equal
 // A run that has stepped for this many times the slowest level's best time cannot be the best of
@@ -122,7 +126,10 @@ class StepSearch {
   bool slower(std::size_t rung, double level) {
     const auto& all = seconds_.at(any_motion);
     for (auto best = best_rung(level); best && *best != rung; best = best_rung(level)) {
-      if (all.at(rung) > clearly_slower * all.at(*best)) return true;
+      const PointResult& point = visit(rung);
+      const double seconds = all.at(rung) * point.spec.step * point.steps_planned;
+      const double decides = seconds < longest_retaken ? clearly_slower_short : clearly_slower;
+      if (all.at(rung) > decides * all.at(*best)) return true;
       if (sampled_.contains(rung) && sampled_.contains(*best))
         return all.at(rung) > noise * all.at(*best);
       sample_again(rung);
