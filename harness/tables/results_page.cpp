@@ -67,6 +67,7 @@ void print_planes(std::ostream& out, const std::vector<Plane>& planes) {
   for (const Plane& plane : planes) {
     const std::string place = scene_words(plane.scene) + ", " + std::to_string(plane.vertices);
     for (const Cell& cell : plane.cells) {  // by limit, then by level
+      if (plane.sweep == "step") break;     // figures show these
       if (cell.level == plane.levels.front())
         grid.rows.push_back({place + ", " + plane.sweep, percent(cell.strain_limit)});
       grid.rows.back().push_back(cell_text(cell));
