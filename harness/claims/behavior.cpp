@@ -82,8 +82,7 @@ constexpr double calibration_tolerance = 0.85;  // of the limit, the least strai
 
 bool calibrated(const Point& p) {
   return p.contestant() == implicit_springs.name && p.ok() && p.sweep() == "strain" &&
-         !p.collides_last() && std::isfinite(p.stiffness()) &&
-         std::isfinite(tension_over_weight(p)) &&
+         std::isfinite(p.stiffness()) && std::isfinite(tension_over_weight(p)) &&
          p.measures().max_strain >= 0.999 * calibration_tolerance * p.strain_limit();
 }
 
@@ -211,7 +210,7 @@ Verdict garment_slip(const Points& points) {
 Verdict springs_stiffness(const Points& points) {
   Verdict found;
   std::map<double, std::vector<Point>> by_step;
-  for (const Point& p : points.all)
+  for (const Point& p : points.contests)
     if (calibrated(p)) by_step[p.step()].push_back(p);
   if (by_step.empty()) return {};
   const auto most_of = [](const auto& groups) {

@@ -74,6 +74,7 @@ Points::Points(const std::vector<json>& results) {
       if (seen.contains(key)) continue;
       here.insert(key);
       all.push_back(point);
+      if (!point.collides_last()) contests.push_back(point);
     }
     seen.merge(here);
   }
@@ -83,9 +84,8 @@ Curve Points::best(const std::string& scene, const std::string& sweep, const std
                    const Question& question, std::optional<double> vertices) const {
   const bool strain = sweep == "strain";
   std::vector<Point> chosen;
-  std::ranges::copy_if(all, std::back_inserter(chosen), [&](const Point& p) {
-    return p.scene() == scene && p.sweep() == sweep && !p.collides_last();
-  });
+  std::ranges::copy_if(contests, std::back_inserter(chosen),
+                       [&](const Point& p) { return p.scene() == scene && p.sweep() == sweep; });
   if (sweep != "resolution" && !chosen.empty()) {
     const double size =
         vertices ? *vertices : std::ranges::max(chosen, {}, &Point::vertices).vertices();

@@ -56,13 +56,14 @@ struct Points {
   explicit Points(const std::vector<json>& results);
 
   std::vector<Point> all;
-  bool repeated = false;  // two files have a point
+  std::vector<Point> contests;  // those with contact inside the solve; others are evidence only
+  bool repeated = false;        // two files have a point
   ContestantRoles roles;
   std::vector<const json*> matrix, freedom, same_frame;  // of stability sweeps
 
-  // The best points of a method, with contact inside the solve, over the axis of a sweep ("strain"
-  // or "resolution"). The faster of tuned and default settings counts, so that tuning harms nobody.
-  // A strain sweep counts at its largest size unless `vertices` are given.
+  // The best points of a method in contests over the axis of a sweep ("strain" or "resolution").
+  // The faster of tuned and default settings counts, so that tuning harms nobody. A strain sweep
+  // counts at its largest size unless `vertices` are given.
   Curve best(const std::string& scene, const std::string& sweep, const std::string& method,
              const Question& question = {}, std::optional<double> vertices = {}) const;
 };

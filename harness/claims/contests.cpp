@@ -128,9 +128,9 @@ struct Steps {
 Steps steps_of(const Points& points, const Point& best, double level) {
   const double step = best.step();
   Steps steps{step, step, step};
-  for (const Point& p : points.all) {
+  for (const Point& p : points.contests) {
     if (!p.ok() || !p.timed() || p.contestant() != best.contestant() || p.scene() != best.scene() ||
-        p.collides_last() || p.sweep() != best.sweep() || p.vertices() != best.vertices() ||
+        p.sweep() != best.sweep() || p.vertices() != best.vertices() ||
         p.strain_limit() != best.strain_limit() || !p.within_error(level) ||
         (p.id() != best.id() && above(ratio(p, best), 1) == Answer::yes))
       continue;
@@ -179,7 +179,7 @@ Verdict chain_speed(const Points& points) {
 
 Verdict drape_time_over_strain(const Points& points) {
   std::map<double, int, std::greater<>> sizes;
-  for (const Point& p : points.all)
+  for (const Point& p : points.contests)
     if (p.scene() == "drape" && p.sweep() == "strain") ++sizes[p.vertices()];
   return at_questions([&](const Question& asked) {
     Verdict found;

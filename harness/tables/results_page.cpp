@@ -54,7 +54,7 @@ std::string lead_text(const Cell& cell, Rival which) {
 }
 
 // Who is fastest at the headline's limit and error, and how much of that is stepper or method; then
-// at every limit and error.
+// at every limit and error, except for step sweeps, which have figures.
 void print_planes(std::ostream& out, const std::vector<Plane>& planes) {
   Table answers{
       {"scene, vertices", "strain", "error", "known to", "fastest", "its method as published",
@@ -67,7 +67,7 @@ void print_planes(std::ostream& out, const std::vector<Plane>& planes) {
   for (const Plane& plane : planes) {
     const std::string place = scene_words(plane.scene) + ", " + std::to_string(plane.vertices);
     for (const Cell& cell : plane.cells) {  // by limit, then by level
-      if (plane.sweep == "step") break;     // figures show these
+      if (plane.sweep == "step") break;
       if (cell.level == plane.levels.front())
         grid.rows.push_back({place + ", " + plane.sweep, percent(cell.strain_limit)});
       grid.rows.back().push_back(cell_text(cell));
