@@ -12,9 +12,9 @@ namespace {
 using Eigen::MatrixXd, Eigen::VectorXd, testing::Random, testing::uniform;
 
 // K over all 3 n coordinates, pinned ones with a unit diagonal: they then decouple.
-MatrixXd dense_kkt(const Problem& problem, const Positions& x, const VectorXd& mu,
-                   double mean_mass) {
+MatrixXd dense_kkt(const Problem& problem, const Positions& x, const VectorXd& mu) {
   const Eigen::Index n3 = 3 * x.cols(), m = mu.size();
+  const double mean_mass = problem.total_mass() / problem.vertices();
   MatrixXd kkt = MatrixXd::Zero(n3 + m, n3 + m);
   for (Eigen::Index i = 0; i < n3; ++i) kkt(i, i) = problem.mass()[i / 3] / mean_mass;
   for (Eigen::Index k = 0; k < m; ++k) {
@@ -103,7 +103,7 @@ TEST_P(KktSolvers, SolveTheDenseSaddlePointSystemAndNoticeTheWrongInertia) {
       };
       const VectorXd natural_mu = in_order_of_problem(mu);
       const auto dense = [&](const VectorXd& multipliers) {
-        return dense_kkt(problem, mesh.x, multipliers, kkt->mean_mass());
+        return dense_kkt(problem, mesh.x, multipliers);
       };
       const VectorXd eigenvalues = dense(natural_mu).selfadjointView<Eigen::Lower>().eigenvalues();
       const bool proper = (eigenvalues.array() < 0).count() == m;
