@@ -7,7 +7,7 @@
 namespace harness {
 namespace {
 
-// From this ratio of times on, one sample decides. Who else uses the machine can double a short
+// From this ratio of times on, one sample decides. Other programs on the machine can double a short
 // run's time.
 constexpr double clearly_slower = 1.5, clearly_slower_short = 2.5;
 constexpr double close_neighbor = 2;  // times the best time
