@@ -89,7 +89,7 @@ def label_ends(axes: Axes, curves: Curves, styles: Styles) -> None:
     for name, text, place in zip(names, lines, places):
         axes.annotate("\n".join(text), ends[name][:2], (1 + 14 / width, place / height), textcoords="axes fraction", va="center",
                       fontsize=LEGEND_SIZE, color=[0.75 * part for part in to_rgb(styles[name].color)], linespacing=1.0, annotation_clip=False,
-                      arrowprops={"arrowstyle": "-", "color": "#AAAAAA", "linewidth": 0.6, "shrinkA": 0, "shrinkB": 3})
+                      arrowprops={"arrowstyle": "-", "color": "#AAAAAA", "linewidth": 0.6, "shrinkA": 0, "shrinkB": 3, "relpos": (0, 0.5)})
 
 
 def draw_steps(axes: Axes, curves: Curves, styles: Styles) -> None:
