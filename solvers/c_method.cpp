@@ -17,7 +17,7 @@ static_assert(sizeof(Edge) == 2 * sizeof(std::int32_t) &&
 
 bool has(const InextensibleMethod& method, int flag) { return (method.flags & flag) != 0; }
 
-// An object of a method. It is made anew after an exception, when its state cannot be trusted.
+// An object of a method. It is replaced after an exception, when its state cannot be trusted.
 class Object {
  public:
   // The problem outlives it.

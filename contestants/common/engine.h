@@ -17,7 +17,7 @@ inline Eigen::Map<const Eigen::Matrix3Xd> columns(const double* vectors, Eigen::
   return {vectors, 3, count};
 }
 
-// Thrown out of a step that is refused. After any other exception bench makes the engine anew.
+// Thrown out of a step that is refused. After any other exception bench makes a new engine.
 struct Refusal {
   InextensibleResult result;
   const char* reason;  // a literal

@@ -235,7 +235,7 @@ pid_t lock_holder(int file) {
 }
 
 void open_standard_streams() {
-  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond `ulimit -f` fails, and is told as any other
+  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond `ulimit -f` fails like any other
   for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor) {
     if (fcntl(descriptor, F_GETFD) != -1 || errno != EBADF) continue;
     // The lowest free number is this one. It is opened in the wrong direction, so that use fails.

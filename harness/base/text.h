@@ -1,4 +1,4 @@
-// Numbers and texts as people read them, what is told of bad input, and the regular expressions
+// Numbers and texts as people read them, messages about bad input, and the regular expressions
 // that people type.
 #pragma once
 

@@ -41,7 +41,7 @@ using analysis::text;
 std::string text(double value, int digits = 3);
 std::string text(const Slope& slope);  // "-0.5 ± 0.1", with its 95 % interval
 
-// What a claim is asked at. The paper compares by strain alone, in the methods' own stepper.
+// The conditions of a comparison. The paper compares by strain alone, in the methods' own stepper.
 struct Question {
   double level = any_motion;  // of error
   bool any_stepper = false;   // each method in the stepper that is best for it
@@ -71,8 +71,8 @@ struct Points {
 std::optional<Point> at(const Curve& curve, double x);
 std::vector<std::string> ids_of(const std::vector<Curve>& curves);
 
-// The paper's question decides. Beside it stands the answer at an error of at most 2 %, and in the
-// best stepper of each method. Runs at tighter limits count in all.
+// The paper's question decides. The answers at an error of at most 2 %, and in the best stepper of
+// each method, are given beside it. Runs at tighter limits count in all.
 Verdict at_questions(const std::function<Verdict(const Question&)>& judge);
 
 // One function per claim; not_measured where measurements are missing.

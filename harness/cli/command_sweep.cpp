@@ -205,7 +205,7 @@ struct SweepCommand : SweepOptions, OutputOptions {
   }
 };
 
-// ---- A result's best points once more, on another day or machine ----
+// ---- A result's best points timed again, on another day or machine ----
 
 struct RepeatCommand {
   std::string file;

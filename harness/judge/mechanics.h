@@ -46,7 +46,7 @@ bool energy_can_only_fall(const Problem& problem);
 //
 // Positions belong to the ends of steps. So do the velocities of some methods; those of the others,
 // (x_n - x_{n-1}) / h, belong to the middle of the step, and the kinetic energy at its end is then
-// interpolated between the middles before and after it. Taken as it stands, it would lag behind by
+// interpolated between the middles before and after it. Without interpolation it would lag by
 // h / 2 and show gains, of first order in h, wherever a motion slows down. It is the energies that
 // are interpolated and not the velocities: the mean velocity of a vibration that turns round in
 // every step is zero.

@@ -134,8 +134,8 @@ inline constexpr std::tuple measure_fields{
           "mark vertices: 0 at rest",
           number_or_null)};
 
-// From the series; without one from the levels, at one of answer_levels; without these, too, the
-// one figure stands for all levels.
+// From the series; without one, from the levels, at one of answer_levels; without these, too, the
+// one figure counts for all levels.
 ErrorAtLevel error_at(const Measures& measures, double level);
 // The series at answer_levels, loose to tight; a level that is as the one before it is left out.
 std::vector<ErrorAtLevel> levels_of_series(const Measures& measures);

@@ -92,7 +92,7 @@ struct FieldCodec<std::vector<OccasionTime>>
     : RowsCodec<OccasionTime, &OccasionTime::occasion, &OccasionTime::least,
                 &OccasionTime::median> {};
 
-// What is run: two runs that agree in these may stand for each other.
+// What is run: two runs that agree in these are interchangeable.
 inline constexpr std::tuple spec_fields{
     field("sweep", &PointSpec::sweep, "", "kind of the sweep that it is a point of"),
     field("scene", &PointSpec::scene, "", "see `bench list scenes`"),
@@ -186,7 +186,7 @@ PointResult point_of(const json& point);
 Samples samples_of(const json& samples);
 PointSpec spec_of(const json& point);
 
-// All of a point that is not measured: two runs of one key may stand for each other.
+// Everything in a point that is not measured: runs of one key are interchangeable.
 std::string key_of(const PointSpec& spec);
 
 }  // namespace harness

@@ -62,7 +62,7 @@ std::optional<PairNoise> noise_of(const json& context);
 
 // documents: results of one kind (check_result), at least one. Points that belong to one search for
 // a best step, or hard cases of one name, are taken from the first document that has any. The
-// second contestant of an A/A pair is left out; the largest noise of all pairs stands for all. The
+// second contestant of an A/A pair is left out; the largest noise of all pairs counts for all. The
 // rest of the context is the first one's. The table is complete if every document is. Throws
 // UsageError for documents of different kinds.
 json joined(const std::vector<json>& documents);

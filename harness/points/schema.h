@@ -28,7 +28,7 @@ inline constexpr std::tuple answer_row_fields{
           {.nullable = true}),
     field("detail", &AnswerRow::detail, "", "why there is no value", {.nullable = true})};
 
-// As it is to stand in configs/<name>.schema.json: the definitions that follow from tables,
+// The text for configs/<name>.schema.json: the definitions that follow from tables,
 // "status", "counter", "work", "point" and "answer_row", are replaced. "result", "baseline",
 // "gate", "stability", "tuned", "answers".
 std::string schema_text(const std::string& name);

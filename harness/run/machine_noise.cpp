@@ -3,9 +3,9 @@
 #include "harness/base/statistics.h"
 
 namespace harness {
-// Independent operations in the first-level cache: whoever shares the core's units, such as another
-// virtual machine on the sibling hyperthread, doubles its time. A recurrence, which waits for its
-// own results, would hardly notice, while solvers lose as much as this work does.
+// Independent operations in the first-level cache: a program that shares the core's units, such as
+// another virtual machine on the sibling hyperthread, doubles its time. A recurrence, which waits
+// for its own results, would hardly notice, while solvers lose as much as this work does.
 double fixed_work() {
   static std::array<double, 2048> data{};
   const auto start = Clock::now();

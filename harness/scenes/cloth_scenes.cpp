@@ -119,7 +119,7 @@ Scene build_block(const SceneParameters& p) {
   return finished(std::move(cloth));
 }
 
-// Coulomb friction slows it by mu g until it stands.
+// Coulomb friction slows it by mu g until it stops.
 Positions block_at(const SceneParameters& p, double time) {
   const double slowing = p.at("friction") * p.at("gravity"),
                sliding = std::min(time, p.at("speed") / slowing);

@@ -112,7 +112,7 @@ void Reader::read(const char* at) {
   }
 }
 
-// Each vertex by the one that stands for it.
+// Replaces each vertex by first[vertex].
 void replace(MeshFile& file, const std::vector<int>& first) {
   for (MeshFile::Face& face : file.faces)
     for (int& corner : face.corners) corner = first[corner];

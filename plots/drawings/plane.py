@@ -1,4 +1,4 @@
-"""The plane strain x error of each scene and size: who is fastest within both, and how far ahead of the best of the paper's six."""
+"""The plane strain x error of each scene and size: the fastest within both, and its lead over the best of the paper's six."""
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure

@@ -64,7 +64,7 @@ class Result:
         return f"{subject[:1].upper()}{subject[1:]}. {re.sub(r'[a-z0-9_@]+', lambda name: self.title(name[0]), words)}".rstrip(". ")
 
     def title(self, name: str) -> str:
-        """A solver's label without what stands in parentheses; other words as they are."""
+        """A solver's label without the words in parentheses; other words as they are."""
         return short(self.label(name)) if name in self.solvers else name
 
     def few(self, names: Iterable[str], times: dict[str, float]) -> list[str]:

@@ -87,7 +87,7 @@ def warnings_of(result: Result) -> list[str]:
 def scene_sentence(scene: str, points: list[Json]) -> str:
     """With the parameters that all points share; those that differ are the axis itself."""
     first, *others = [point["scene_parameters"] for point in points]
-    said = ("n", "N", "vertices", "resolution", "duration")  # these stand in other sentences
+    said = ("n", "N", "vertices", "resolution", "duration")  # other sentences have these
     same = [f"{clean(key.replace('_', ' '))} {plain(value)}" for key, value in first.items()
             if key not in said and all(other.get(key) == value for other in others)]
     durations = " or ".join(f"{d:g}" for d in sorted({point["duration"] for point in points}))

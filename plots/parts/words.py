@@ -36,7 +36,7 @@ def spoken(label: str) -> str:
 
 
 def short(label: str) -> str:
-    """Without what stands in parentheses."""
+    """Without the words in parentheses."""
     return re.sub(r" \([^)]*\)", "", label)
 
 
