@@ -15,7 +15,7 @@ struct SceneArrays {
   void add_body(const Problem& problem);
 
   InextensibleScene scene{};
-  State start;  // a copy, from which a replacement is made like the first object
+  State start;  // a copy: an object that is made anew is made like the first one
   std::vector<double> mass, drag, coefficients, stiffness;
   std::vector<std::int32_t> stencils;
 };
