@@ -112,8 +112,8 @@ class Shake final : public VelocityFilter {
   const char* linear_solver() const override { return system_.solver_name().c_str(); }
 
  private:
-  // The matrix in (7): that of the start of the step; the true one, J(x_j) W J(x^n)^T, of
-  // this iterate or of an earlier one.
+  // The matrix in (7): that of the start of the step; the true one, J(x_j) W J(x^n)^T, of this
+  // iterate or of an earlier one.
   enum class Matrix { start, here, kept };
   // J(x_start) W J(x_start)^T, unless it is there already. False if it is not positive definite.
   bool factor_start(const Positions& x_start, const Contacts* contacts, WorkCounters& work) {
